@@ -1,0 +1,2 @@
+//! The `bowling` program.
+fn main() {}
