@@ -1,0 +1,55 @@
+//! Flat faces: normals at which a whole face is farthest, and the test that they are the answer.
+
+use glam::DVec3;
+
+use super::{Placed, Separation};
+use crate::shape::Kind;
+
+/// Angle within which a face counts as square to the normal [rad]; a metre of face then rises by 0.1 nm.
+const SLACK: f64 = 1e-10;
+/// Closest points that lie this far apart across the normal are still one pair [m].
+const LINED_UP: f64 = 1e-11;
+
+/// Outward normals of the shape's flat faces, world frame.
+pub(super) fn normals(shape: &Placed) -> impl Iterator<Item = DVec3> {
+    let r = shape.rotation;
+    let (x, y, z) = (r.x_axis, r.y_axis, r.z_axis);
+    let (list, count) = match shape.shape.kind {
+        Kind::Cuboid { .. } => ([y, -y, x, -x, z, -z], 6),
+        Kind::Frustum { .. } => ([y, -y, x, x, x, x], 2),
+        Kind::TruncatedEllipsoid { .. } => ([-y, x, x, x, x, x], 1),
+        _ => ([x; 6], 0),
+    };
+    list.into_iter().take(count)
+}
+
+/// The answer at `n` if the closest points line up there, with gap `s`.
+///
+/// The points of a and of b that are farthest along n form two convex sets (points, lines or faces). They line up if
+/// the sets, seen along n, share a point. Projecting in turn on either finds one if there is one.
+pub(super) fn lined_up(a: &Placed, b: &Placed, n: DVec3, s: f64) -> Option<Separation> {
+    let mut point_a = a.face_point(n, b.position, SLACK);
+    let mut point_b = b.face_point(-n, point_a, SLACK);
+    let mut offset = f64::INFINITY;
+    for _ in 0..12 {
+        let d = point_b - point_a;
+        let next = (d - n * n.dot(d)).length();
+        if next <= LINED_UP {
+            return Some(Separation {
+                gap: s,
+                normal: n,
+                point_a,
+                point_b,
+                iterations: 0,
+                capped: false,
+            });
+        }
+        if next > 0.999 * offset {
+            return None;
+        }
+        offset = next;
+        point_a = a.face_point(n, point_b, SLACK);
+        point_b = b.face_point(-n, point_a, SLACK);
+    }
+    None
+}

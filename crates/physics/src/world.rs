@@ -1,0 +1,356 @@
+//! The world: bodies, what touches what, and the calls that change them from outside.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+use thiserror::Error;
+
+use crate::body::{Body, BodyDef, Material, Motion};
+use crate::compound::Compound;
+use crate::pose::Pose;
+use crate::response::Response;
+use crate::step::pairs::Pairs;
+
+/// Constants of a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Steps per simulated second [1/s]; independent of any display.
+    pub step_hz: f64,
+    /// Acceleration of gravity [m/s2], world frame.
+    pub gravity: DVec3,
+    /// Law of impacts.
+    pub response: Response,
+    /// Largest number of new normals per search (§2.1); 20 in the paper's experiment.
+    pub iteration_cap: u32,
+    /// Contact time after which a lasting contact has taken the share `friction_rate` of the slip [s].
+    pub friction_reference_s: f64,
+    /// Whether bodies at rest are skipped until something touches them.
+    pub sleeping: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Settings {
+        Settings {
+            step_hz: 720.0,
+            gravity: DVec3::new(0.0, -9.81, 0.0),
+            response: Response::Guarded,
+            iteration_cap: 20,
+            friction_reference_s: 1.0 / 60.0,
+            sleeping: true,
+        }
+    }
+}
+
+/// Settings that no world can run with.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum SettingsError {
+    /// The step rate must be positive and finite.
+    #[error("step_hz must be a positive number of steps per second, not {0}")]
+    StepRate(f64),
+    /// Gravity must be finite.
+    #[error("gravity must be a finite acceleration in m/s2, not {0}")]
+    Gravity(DVec3),
+    /// At least one iteration is needed.
+    #[error("iteration_cap must be at least 1")]
+    IterationCap,
+    /// The reference interval must be positive and finite.
+    #[error("friction_reference_s must be a positive time in seconds, not {0}")]
+    FrictionReference(f64),
+}
+
+/// A body's name in its world; stale after the body is removed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct BodyId {
+    pub(crate) slot: u32,
+    generation: u32,
+}
+
+/// One impact of the last step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Impact {
+    /// First body.
+    pub a: BodyId,
+    /// Second body.
+    pub b: BodyId,
+    /// Where they met [m], Eq. (1).
+    pub point: DVec3,
+    /// Unit normal from a to b, Eq. (2).
+    pub normal: DVec3,
+    /// Speed at which the contact points approached along the normal [m/s].
+    pub approach_speed: f64,
+    /// Impulse on a [N s]; b received the opposite.
+    pub impulse: DVec3,
+}
+
+/// Bodies and their contacts. Cloning it is a snapshot: the clone runs on to the same bits.
+#[derive(Clone, Debug)]
+pub struct World {
+    pub(crate) settings: Settings,
+    pub(crate) bodies: Vec<Body>,
+    /// Per slot: how often it was reused, and whether a body lives in it.
+    generations: Vec<(u32, bool)>,
+    pub(crate) targets: Vec<Option<Pose>>,
+    pub(crate) pairs: Pairs,
+    pub(crate) impacts: Vec<Impact>,
+    pub(crate) steps: u64,
+}
+
+impl World {
+    /// An empty world.
+    ///
+    /// # Errors
+    /// On a step rate, gravity, cap or reference interval that cannot be used.
+    pub fn new(settings: Settings) -> Result<World, SettingsError> {
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        if !positive(settings.step_hz) {
+            return Err(SettingsError::StepRate(settings.step_hz));
+        }
+        if !settings.gravity.is_finite() {
+            return Err(SettingsError::Gravity(settings.gravity));
+        }
+        if settings.iteration_cap == 0 {
+            return Err(SettingsError::IterationCap);
+        }
+        if !positive(settings.friction_reference_s) {
+            return Err(SettingsError::FrictionReference(
+                settings.friction_reference_s,
+            ));
+        }
+        Ok(World {
+            settings,
+            bodies: Vec::new(),
+            generations: Vec::new(),
+            targets: Vec::new(),
+            pairs: Pairs::default(),
+            impacts: Vec::new(),
+            steps: 0,
+        })
+    }
+
+    /// The constants it runs with.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Adds a body. A state or mass that is not finite freezes the body where it is instead of failing later.
+    pub fn add(&mut self, def: BodyDef) -> BodyId {
+        let valid = def.motion == Motion::Fixed || def.mass.is_valid();
+        let mut body = Body::new(def);
+        body.frozen = !valid || !body.is_finite();
+        let slot = match self.generations.iter().position(|(_, live)| !live) {
+            Some(slot) => {
+                self.generations[slot].1 = true;
+                self.bodies[slot] = body;
+                self.targets[slot] = None;
+                slot
+            }
+            None => {
+                self.generations.push((0, true));
+                self.bodies.push(body);
+                self.targets.push(None);
+                self.bodies.len() - 1
+            }
+        };
+        self.pairs.forget(slot, self.bodies.len());
+        BodyId {
+            slot: slot as u32,
+            generation: self.generations[slot].0,
+        }
+    }
+
+    /// Takes a body out; what it carried wakes.
+    ///
+    /// # Panics
+    /// If the body was removed before.
+    pub fn remove(&mut self, id: BodyId) {
+        let slot = self.slot(id);
+        self.disturb(slot);
+        self.generations[slot] = (id.generation + 1, false);
+        let body = &mut self.bodies[slot];
+        body.collides = false;
+        body.motion = Motion::Fixed;
+        body.halt();
+        self.pairs.forget(slot, self.bodies.len());
+    }
+
+    /// Whether the body is still in the world.
+    pub fn contains(&self, id: BodyId) -> bool {
+        self.generations.get(id.slot as usize) == Some(&(id.generation, true))
+    }
+
+    /// The body's state.
+    ///
+    /// # Panics
+    /// If the body was removed.
+    pub fn body(&self, id: BodyId) -> &Body {
+        &self.bodies[self.slot(id)]
+    }
+
+    /// All bodies, in the order of their slots.
+    pub fn ids(&self) -> impl Iterator<Item = BodyId> + '_ {
+        let live = self.generations.iter().enumerate().filter(|(_, g)| g.1);
+        live.map(|(slot, g)| BodyId {
+            slot: slot as u32,
+            generation: g.0,
+        })
+    }
+
+    /// Puts a body elsewhere at once, keeping its velocity; wakes it and what it touched.
+    pub fn set_pose(&mut self, id: BodyId, pose: Pose) {
+        let slot = self.slot(id);
+        self.disturb(slot);
+        let body = &mut self.bodies[slot];
+        let angular = body.angular_velocity();
+        body.position = pose.position;
+        body.rotation = pose.rotation.normalize();
+        let linear = body.linear;
+        body.set_velocity(linear, angular);
+        body.frozen = !body.is_finite();
+        self.pairs.forget(slot, self.bodies.len());
+    }
+
+    /// Sets velocities [m/s] and [rad/s], world frame; wakes the body.
+    pub fn set_velocity(&mut self, id: BodyId, linear: DVec3, angular: DVec3) {
+        let slot = self.slot(id);
+        self.disturb(slot);
+        self.bodies[slot].set_velocity(linear, angular);
+    }
+
+    /// Changes who moves the body; its velocity stays.
+    pub fn set_motion(&mut self, id: BodyId, motion: Motion) {
+        let slot = self.slot(id);
+        self.disturb(slot);
+        let body = &mut self.bodies[slot];
+        let (linear, angular) = (body.linear, body.angular_velocity());
+        body.motion = motion;
+        body.set_velocity(linear, angular);
+        self.targets[slot] = None;
+    }
+
+    /// Changes elasticity and friction rate.
+    pub fn set_material(&mut self, id: BodyId, material: Material) {
+        let slot = self.slot(id);
+        self.bodies[slot].material = material;
+        self.disturb(slot);
+    }
+
+    /// Changes the surface; mass and centre of mass stay.
+    pub fn set_compound(&mut self, id: BodyId, compound: Arc<Compound>) {
+        let slot = self.slot(id);
+        self.disturb(slot);
+        self.bodies[slot].compound = compound;
+        self.pairs.forget(slot, self.bodies.len());
+    }
+
+    /// Whether the body takes part in collisions; one that does not passes through everything.
+    pub fn set_collides(&mut self, id: BodyId, collides: bool) {
+        let slot = self.slot(id);
+        self.disturb(slot);
+        self.bodies[slot].collides = collides;
+        self.pairs.forget(slot, self.bodies.len());
+    }
+
+    /// Tells a driven body where to be at the end of the next step; its velocity follows from the difference.
+    ///
+    /// A step without a new target leaves it standing. A pose that is not finite is ignored, and so is the call for
+    /// a body that is not driven.
+    pub fn drive_to(&mut self, id: BodyId, pose: Pose) {
+        let slot = self.slot(id);
+        if pose.is_finite() && self.bodies[slot].motion == Motion::Driven {
+            self.targets[slot] = Some(pose);
+        }
+    }
+
+    /// Impacts of the last step, in the order in which they happened.
+    pub fn impacts(&self) -> &[Impact] {
+        &self.impacts
+    }
+
+    /// Whether two bodies were in contact at the end of the last step: resting on each other or just struck.
+    pub fn touching(&self, a: BodyId, b: BodyId) -> bool {
+        let (a, b) = (self.slot(a), self.slot(b));
+        self.pairs.any_touching(a, b)
+            || self.impacts.iter().any(|i| {
+                let (x, y) = (i.a.slot as usize, i.b.slot as usize);
+                (x, y) == (a, b) || (x, y) == (b, a)
+            })
+    }
+
+    /// Steps taken since the world was made.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// Simulated time [s]: steps over step rate.
+    pub fn time(&self) -> f64 {
+        self.steps as f64 / self.settings.step_hz
+    }
+
+    /// Length of a step [s].
+    pub fn dt(&self) -> f64 {
+        1.0 / self.settings.step_hz
+    }
+
+    /// Kinetic and potential energy of all dynamic bodies [J], the height measured along gravity from the origin.
+    pub fn energy(&self) -> f64 {
+        let dynamic = self.bodies.iter().filter(|b| b.motion == Motion::Dynamic);
+        dynamic
+            .map(|b| b.kinetic_energy() - b.mass.mass * self.settings.gravity.dot(b.position))
+            .sum()
+    }
+
+    pub(crate) fn id(&self, slot: usize) -> BodyId {
+        BodyId {
+            slot: slot as u32,
+            generation: self.generations[slot].0,
+        }
+    }
+
+    pub(crate) fn slot(&self, id: BodyId) -> usize {
+        assert!(self.contains(id), "body {id:?} was removed from this world");
+        id.slot as usize
+    }
+
+    /// Wakes a body and all that lean on it.
+    pub(crate) fn disturb(&mut self, slot: usize) {
+        self.wake(slot);
+        for other in 0..self.bodies.len() {
+            if other != slot && self.pairs.any_touching(slot, other) {
+                self.wake(other);
+            }
+        }
+    }
+
+    /// Velocity of driven bodies for this step.
+    pub(crate) fn aim_driven(&mut self, dt: f64) {
+        for (body, target) in self.bodies.iter_mut().zip(&mut self.targets) {
+            if body.motion != Motion::Driven {
+                continue;
+            }
+            let (linear, angular) = match target.take() {
+                Some(pose) => {
+                    let mut change = pose.rotation * body.rotation.conjugate();
+                    if change.w < 0.0 {
+                        change = -change;
+                    }
+                    (
+                        (pose.position - body.position) / dt,
+                        change.normalize().to_scaled_axis() / dt,
+                    )
+                }
+                None => (DVec3::ZERO, DVec3::ZERO),
+            };
+            body.set_velocity(linear, angular);
+        }
+    }
+}
+
+impl Body {
+    pub(crate) fn is_finite(&self) -> bool {
+        self.position.is_finite()
+            && self.rotation.is_finite()
+            && self.linear.is_finite()
+            && self.momentum.is_finite()
+            && self.turning.is_finite()
+    }
+}
