@@ -25,26 +25,27 @@ fn up(y: f64) -> Pose {
 
 /// Pin of primitives: flat base, belly, neck and head.
 pub fn composite_pin() -> Arc<Compound> {
-    let base = Shape::frustum(BASE_RADIUS, 0.0359, 0.0095).unwrap();
-    let belly = Shape::ellipsoid(DVec3::new(0.0605, 0.112, 0.0605)).unwrap();
-    let neck = Shape::frustum(0.0265, 0.0230, 0.028).unwrap();
-    let head = Shape::sphere(0.0323).unwrap();
+    let base = Shape::frustum(BASE_RADIUS, 0.0359, 0.0095).expect("fixture sizes are positive");
+    let belly =
+        Shape::ellipsoid(DVec3::new(0.0605, 0.112, 0.0605)).expect("fixture sizes are positive");
+    let neck = Shape::frustum(0.0265, 0.0230, 0.028).expect("fixture sizes are positive");
+    let head = Shape::sphere(0.0323).expect("fixture sizes are positive");
     let parts = vec![
         (up(0.0095), base),
         (up(0.1143), belly),
         (up(0.247), neck),
         (up(0.3487), head),
     ];
-    Arc::new(Compound::new(parts).unwrap())
+    Arc::new(Compound::new(parts).expect("fixture sizes are positive"))
 }
 
 /// Pin of one ellipsoid that stands on its cut.
 pub fn ellipsoid_pin() -> Arc<Compound> {
     let ratio = (1.0 - (BASE_RADIUS / 0.0605f64).powi(2)).sqrt();
     let tall = 0.381 / (1.0 + ratio);
-    let shape =
-        Shape::truncated_ellipsoid(DVec3::new(0.0605, tall, 0.0605), -tall * ratio).unwrap();
-    Arc::new(Compound::new(vec![(up(tall * ratio), shape)]).unwrap())
+    let shape = Shape::truncated_ellipsoid(DVec3::new(0.0605, tall, 0.0605), -tall * ratio)
+        .expect("fixture sizes are positive");
+    Arc::new(Compound::new(vec![(up(tall * ratio), shape)]).expect("fixture sizes are positive"))
 }
 
 pub fn material(elasticity: f64, friction_rate: f64) -> Material {
@@ -94,13 +95,15 @@ pub fn pin(compound: &Arc<Compound>, material: Material, spot: DVec3) -> BodyDef
 }
 
 pub fn ball(material: Material, at: DVec3) -> BodyDef {
-    let sphere = Arc::new(Compound::single(Shape::sphere(BALL_RADIUS).unwrap()));
+    let sphere = Arc::new(Compound::single(
+        Shape::sphere(BALL_RADIUS).expect("fixture sizes are positive"),
+    ));
     def(sphere, Motion::Dynamic, BALL_MASS, material, at)
 }
 
 /// A fixed box between two corners.
 pub fn block(material: Material, low: DVec3, high: DVec3) -> BodyDef {
-    let shape = Shape::cuboid((high - low) * 0.5).unwrap();
+    let shape = Shape::cuboid((high - low) * 0.5).expect("fixture sizes are positive");
     def(
         Arc::new(Compound::single(shape)),
         Motion::Fixed,
@@ -112,7 +115,9 @@ pub fn block(material: Material, low: DVec3, high: DVec3) -> BodyDef {
 
 /// A driven ball.
 pub fn hand(material: Material, at: DVec3) -> BodyDef {
-    let sphere = Arc::new(Compound::single(Shape::sphere(0.05).unwrap()));
+    let sphere = Arc::new(Compound::single(
+        Shape::sphere(0.05).expect("fixture sizes are positive"),
+    ));
     def(sphere, Motion::Driven, PIN_MASS, material, at)
 }
 
@@ -152,7 +157,7 @@ pub fn add_building(world: &mut World, m: Material) -> Vec<BodyId> {
 
 /// A whole alley with a rack of pins; returns the pins.
 pub fn alley(settings: Settings, pins: &Arc<Compound>, m: Material) -> (World, Vec<BodyId>) {
-    let mut world = World::new(settings).unwrap();
+    let mut world = World::new(settings).expect("fixture sizes are positive");
     add_building(&mut world, m);
     let ids = spots()
         .iter()
