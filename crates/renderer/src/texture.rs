@@ -1,0 +1,193 @@
+//! Pictures on surfaces: upload, smaller copies for the distance, and sampling.
+
+use std::path::Path;
+
+use image::RgbaImage;
+
+use crate::{Gpu, RenderError};
+
+/// Colours are stored as sRGB and read as linear.
+const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
+
+/// Most samples along the longer axis of a pixel's footprint; the lane is seen at grazing angles.
+const ANISOTROPY: u16 = 8;
+
+/// A texture on the device with the bindings that a pass reads it through.
+#[derive(Debug)]
+pub(crate) struct Texture {
+    texture: wgpu::Texture,
+    pub bind_group: wgpu::BindGroup,
+}
+
+impl Texture {
+    pub fn new(
+        gpu: &Gpu,
+        layout: &wgpu::BindGroupLayout,
+        sampler: &wgpu::Sampler,
+        image: &RgbaImage,
+    ) -> Result<Self, RenderError> {
+        let (width, height) = image.dimensions();
+        let most = gpu.max_side();
+        if width == 0 || height == 0 || width > most || height > most {
+            return Err(RenderError::Texture(format!(
+                "it has {width} x {height} pixels, each side must be 1 to {most}"
+            )));
+        }
+        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("picture"),
+            size: extent(width, height),
+            mip_level_count: width.max(height).ilog2() + 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: FORMAT,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        let view = texture.create_view(&Default::default());
+        let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("picture"),
+            layout,
+            entries: &[
+                wgpu::BindGroupEntry {
+                    binding: 0,
+                    resource: wgpu::BindingResource::TextureView(&view),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 1,
+                    resource: wgpu::BindingResource::Sampler(sampler),
+                },
+            ],
+        });
+        let texture = Self {
+            texture,
+            bind_group,
+        };
+        texture.write(gpu, image);
+        Ok(texture)
+    }
+
+    /// Replaces the picture by another of the same size; `false`, and nothing done, if the size differs.
+    pub fn replace(&self, gpu: &Gpu, image: &RgbaImage) -> bool {
+        let same = image.dimensions() == (self.texture.width(), self.texture.height());
+        if same {
+            self.write(gpu, image);
+        }
+        same
+    }
+
+    fn write(&self, gpu: &Gpu, image: &RgbaImage) {
+        let mut smaller;
+        let mut level_image = image;
+        for level in 0..self.texture.mip_level_count() {
+            if level > 0 {
+                smaller = half(level_image);
+                level_image = &smaller;
+            }
+            let (width, height) = level_image.dimensions();
+            gpu.queue.write_texture(
+                wgpu::TexelCopyTextureInfo {
+                    texture: &self.texture,
+                    mip_level: level,
+                    origin: wgpu::Origin3d::ZERO,
+                    aspect: wgpu::TextureAspect::All,
+                },
+                level_image.as_raw(),
+                wgpu::TexelCopyBufferLayout {
+                    offset: 0,
+                    bytes_per_row: Some(4 * width),
+                    rows_per_image: None,
+                },
+                extent(width, height),
+            );
+        }
+    }
+}
+
+/// Bindings of one texture and its sampler.
+pub(crate) fn bind_group_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("picture"),
+        entries: &[
+            wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::FRAGMENT,
+                ty: wgpu::BindingType::Texture {
+                    sample_type: wgpu::TextureSampleType::Float { filterable: true },
+                    view_dimension: wgpu::TextureViewDimension::D2,
+                    multisampled: false,
+                },
+                count: None,
+            },
+            wgpu::BindGroupLayoutEntry {
+                binding: 1,
+                visibility: wgpu::ShaderStages::FRAGMENT,
+                ty: wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+                count: None,
+            },
+        ],
+    })
+}
+
+/// Repeating, trilinear, anisotropic where the device offers it.
+pub(crate) fn sampler(gpu: &Gpu) -> wgpu::Sampler {
+    let flags = gpu.adapter.get_downlevel_capabilities().flags;
+    let offered = flags.contains(wgpu::DownlevelFlags::ANISOTROPIC_FILTERING);
+    gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("picture"),
+        address_mode_u: wgpu::AddressMode::Repeat,
+        address_mode_v: wgpu::AddressMode::Repeat,
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        mipmap_filter: wgpu::MipmapFilterMode::Linear,
+        anisotropy_clamp: if offered { ANISOTROPY } else { 1 },
+        ..Default::default()
+    })
+}
+
+/// Reads a PNG or JPEG file.
+///
+/// # Errors
+/// One sentence with the file: missing, or not an image.
+pub fn load_image(path: &Path) -> Result<RgbaImage, RenderError> {
+    let fail = |reason: String| RenderError::TextureFile {
+        path: path.to_owned(),
+        reason,
+    };
+    let bytes = std::fs::read(path)
+        .map_err(|error| fail(format!("the texture cannot be read: {error}")))?;
+    image::load_from_memory(&bytes)
+        .map(|image| image.to_rgba8())
+        .map_err(|error| fail(format!("the texture is no usable image: {error}")))
+}
+
+fn half(image: &RgbaImage) -> RgbaImage {
+    let (width, height) = image.dimensions();
+    crate::relay(image, (width / 2).max(1), (height / 2).max(1))
+}
+
+fn extent(width: u32, height: u32) -> wgpu::Extent3d {
+    wgpu::Extent3d {
+        width,
+        height,
+        depth_or_array_layers: 1,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn load_image_names_the_file() {
+        let error = load_image(Path::new("no/such.png")).expect_err("there is none");
+        assert!(error.to_string().starts_with("no/such.png: "), "{error}");
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("text.png");
+        std::fs::write(&path, "not a picture").expect("the folder is writable");
+        let text = load_image(&path).expect_err("no picture").to_string();
+        assert!(
+            text.contains("text.png: the texture is no usable image"),
+            "{text}"
+        );
+    }
+}
