@@ -1,1 +1,188 @@
-//! Under construction.
+//! The rules of the alley: hands, balls, pins, pinsetter, conditions and scores. No graphics, no headset, no clock.
+//!
+//! [`Game::step`] consumes one [`Input`] and advances the alley by whole physics steps. The same inputs give the same bits,
+//! which [`Game::hash`] checks. World frame: origin at the middle of the foul line on the lane's surface, x to the bowler's
+//! right, y up, the lane runs along -z; SI units and radians.
+#![cfg_attr(test, allow(clippy::disallowed_methods))]
+
+mod alley;
+mod ball_return;
+mod buttons;
+mod components;
+mod condition;
+mod config;
+mod contest;
+mod event;
+mod grab;
+mod hand;
+mod input;
+mod observe;
+mod pin_shape;
+mod pinsetter;
+mod release;
+mod room;
+mod score;
+mod throw;
+mod visible;
+mod walk;
+
+use glam::DVec3;
+use physics::Pose;
+
+pub use condition::{Button, Conditions};
+pub use config::{
+    BallConfig, Config, ConfigError, DeskConfig, DisplayConfig, DisplayProfile, DisplayProfileName,
+    GutterConfig, HandConfig, KickbackConfig, LaneConfig, Layer, ObjectShape, ObjectsConfig,
+    ParticipantConfig, PhysicsConfig, PinConfig, PinEllipsoidConfig, PinPartsConfig,
+    PinsetterConfig, PitConfig, RackConfig, ReleaseConfig, ReleaseFit, ResponseModel, RoomConfig,
+    RulesConfig, StartConfig, TrackingConfig, WalkingConfig,
+};
+pub use event::{
+    EndReason, Event, EventKind, Release, ReleaseSource, ReleaseVelocity, TrackedPart,
+};
+pub use input::{Input, Tracked, Velocity};
+pub use observe::{BallSeen, ButtonSeen, Observation, Phase, PinSeen};
+pub use score::{Delivery, PINS, Roll, ScoreError, ScoreSheet};
+pub use visible::{Model, Visible};
+
+use contest::Pending;
+use hand::Hand;
+use room::Room;
+use throw::Stage;
+
+/// Most frames that a game can have.
+pub const MAX_FRAMES: u32 = 10;
+
+/// Why a session cannot begin.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum GameError {
+    /// The number of frames is impossible.
+    #[error("a game has from 1 to {MAX_FRAMES} frames, not {0}; give another number of frames")]
+    Frames(u32),
+    /// Something that one session has once differs between the conditions.
+    #[error(
+        "{0} must be the same under Red and Blue; set it in default.toml or the scene instead of a condition"
+    )]
+    DifferingCondition(&'static str),
+    /// Physics refuses its settings.
+    #[error(transparent)]
+    Settings(#[from] physics::SettingsError),
+    /// Physics refuses a size.
+    #[error(transparent)]
+    Shape(#[from] physics::ShapeError),
+}
+
+/// A session: the room, the participant in it, and the games that are played.
+pub struct Game {
+    conditions: Conditions,
+    frames: u32,
+    room: Room,
+    steps: u64,
+    /// The head as it is tracked; `None` while it is not.
+    head: Option<Tracked>,
+    world_from_tracking: Pose,
+    walking_speed: f64,
+    rig_velocity: DVec3,
+    hand: Hand,
+    /// Whether the head's ground point was beyond the foul line when it was last tracked.
+    head_was_beyond: bool,
+    stage: Stage,
+    playing: Option<Button>,
+    sheets: [ScoreSheet; 2],
+    pending: Option<Pending>,
+    pressed: Vec<Button>,
+    keys: [bool; 2],
+    impacts: Vec<EventKind>,
+    events: Vec<Event>,
+}
+
+impl Game {
+    /// A session in the lobby: the room of the scene, nobody playing.
+    ///
+    /// # Errors
+    /// When the number of frames is not from 1 to [`MAX_FRAMES`], or a condition's room cannot be built.
+    pub fn new(conditions: Conditions, frames: u32) -> Result<Self, GameError> {
+        if !(1..=MAX_FRAMES).contains(&frames) {
+            return Err(GameError::Frames(frames));
+        }
+        for button in Button::BOTH {
+            let config = conditions.of(button);
+            if config.physics.step_hz != conditions.lobby.physics.step_hz {
+                return Err(GameError::DifferingCondition("physics.step_hz"));
+            }
+            Room::new(config)?;
+        }
+        let start = &conditions.lobby.start;
+        let world_from_tracking = Pose::from_position(DVec3::new(start.x_m, 0.0, start.z_m));
+        Ok(Self {
+            room: Room::new(&conditions.lobby)?,
+            conditions,
+            frames,
+            steps: 0,
+            head: None,
+            world_from_tracking,
+            walking_speed: 0.0,
+            rig_velocity: DVec3::ZERO,
+            hand: Hand::default(),
+            head_was_beyond: false,
+            stage: Stage::Ready {
+                disturbed_since: None,
+            },
+            playing: None,
+            sheets: [ScoreSheet::new(frames), ScoreSheet::new(frames)],
+            pending: None,
+            pressed: Vec::new(),
+            keys: [false; 2],
+            impacts: Vec::new(),
+            events: Vec::new(),
+        })
+    }
+
+    /// Consumes one frame's input and advances the alley by `input.steps` physics steps.
+    pub fn step(&mut self, input: &Input) {
+        self.events.clear();
+        self.track_head(input);
+        self.walk(input);
+        self.track_hand(input);
+        for step in 1..=input.steps {
+            let share = f64::from(step) / f64::from(input.steps);
+            self.reach(share);
+            self.push_buttons(share);
+            self.run_pinsetter();
+            self.return_strays();
+            self.room.world.step();
+            self.steps += 1;
+            self.notice_impacts();
+            self.watch_foul_line();
+            self.follow_throw();
+            self.watch_pins();
+        }
+        self.report_impacts();
+        self.feel();
+        self.grip(input);
+        self.press_keys(input);
+        self.press();
+    }
+
+    /// Adds a fact of this instant.
+    fn record(&mut self, kind: EventKind) {
+        self.events.push(Event {
+            step: self.steps,
+            kind,
+        });
+    }
+
+    /// Keys press on the way down, as the buttons in the room do.
+    fn press_keys(&mut self, input: &Input) {
+        let keys = [input.press_red, input.press_blue];
+        for (button, (is_down, was_down)) in Button::BOTH
+            .into_iter()
+            .zip(keys.into_iter().zip(self.keys))
+        {
+            if is_down && !was_down {
+                self.pressed.push(button);
+            }
+        }
+        self.keys = keys;
+    }
+}

@@ -1,0 +1,204 @@
+use std::path::{Path, PathBuf};
+
+use super::*;
+
+/// The repository's configuration folder.
+pub(crate) fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config")
+}
+
+/// The shipped defaults.
+pub(crate) fn default_config() -> Config {
+    Config::load(&folder(), "alley", None, &[]).unwrap()
+}
+
+/// What a layer over the defaults is refused with.
+fn refusal(text: &str) -> String {
+    let default = Layer::file(&folder().join("default.toml")).unwrap();
+    let layer = Layer::text(Path::new("config/blue.toml"), text);
+    Config::from_layers(&[default, layer])
+        .unwrap_err()
+        .to_string()
+}
+
+#[test]
+fn shipped_conditions_differ_in_friction_alone() {
+    let load = |name| Config::load(&folder(), "alley", Some(name), &[]).unwrap();
+    let (red, mut blue) = (load("red"), load("blue"));
+    assert_eq!(red, default_config());
+    assert_eq!(
+        (red.objects.friction_rate, blue.objects.friction_rate),
+        (0.7, 0.0)
+    );
+    blue.objects.friction_rate = red.objects.friction_rate;
+    assert_eq!(red, blue);
+}
+
+#[test]
+fn stronger_layers_win() {
+    let default = Layer::file(&folder().join("default.toml")).unwrap();
+    let scene = Layer::text(
+        Path::new("scene"),
+        "[objects]\nelasticity = 0.1\nfriction_rate = 0.1\n[walking]\nspeed_mps = 0.9",
+    );
+    let condition = Layer::text(
+        Path::new("condition"),
+        "[objects]\nelasticity = 0.2\nfriction_rate = 0.2",
+    );
+    let argument = Layer::argument("objects.elasticity=0.3").unwrap();
+    let config = Config::from_layers(&[default, scene, condition, argument]).unwrap();
+    let objects = &config.objects;
+    assert_eq!(
+        (
+            objects.elasticity,
+            objects.friction_rate,
+            config.walking.speed_mps
+        ),
+        (0.3, 0.2, 0.9)
+    );
+    assert_eq!(objects.shape, ObjectShape::True);
+}
+
+#[test]
+fn an_unknown_key_is_named_with_file_and_line() {
+    let message = refusal("# a comment\n[objects]\nelastcity = 1.0\n");
+    assert!(
+        message.starts_with("config/blue.toml, line 3: key `objects.elastcity`: unknown field"),
+        "{message}"
+    );
+    assert!(message.contains("`elasticity`"), "{message}");
+    let message = refusal("[objcts]\nelasticity = 1.0\n");
+    assert!(
+        message.starts_with("config/blue.toml, line 1: key `objcts`: unknown field"),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_value_out_of_range_is_named_with_file_and_line() {
+    let message = refusal("\n[objects]\nfriction_rate = 1.5\n");
+    let expected = "config/blue.toml, line 3: key `objects.friction_rate`: 1.5 is out of range; give a number from 0 to 1";
+    assert_eq!(message, expected);
+    let message = refusal("[objects]\nelasticity = nan\n");
+    assert!(
+        message
+            .starts_with("config/blue.toml, line 2: key `objects.elasticity`: NaN is out of range"),
+        "{message}"
+    );
+    let message = refusal("[[balls]]\ndiameter_m = 0.2\nmass_kg = inf\nrg_m = 0.06\n");
+    assert!(
+        message
+            .starts_with("config/blue.toml, line 3: key `balls[0].mass_kg`: inf is out of range"),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_value_of_the_wrong_type_is_named_with_file_and_line() {
+    let message = refusal("[objects]\nshape = \"cube\"\n");
+    assert!(
+        message
+            .starts_with("config/blue.toml, line 2: key `objects.shape`: unknown variant `cube`"),
+        "{message}"
+    );
+    let message = refusal("[objects]\nelasticity = \"high\"\n");
+    assert!(
+        message.starts_with("config/blue.toml, line 2: key `objects.elasticity`: invalid type"),
+        "{message}"
+    );
+    let message = refusal("[lane]\nboards = -3\n");
+    assert!(
+        message.starts_with("config/blue.toml, line 2: key `lane.boards`: invalid value"),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_missing_key_is_named_with_its_table() {
+    let message = refusal("[[balls]]\ndiameter_m = 0.2\nmass_kg = 4.0\n");
+    assert!(
+        message.starts_with("config/blue.toml, line 1: key `balls[0]`: missing field `rg_m`"),
+        "{message}"
+    );
+}
+
+#[test]
+fn text_that_is_no_toml_is_named_with_its_line() {
+    let message = refusal("[objects]\nelasticity 0.5\n");
+    assert!(
+        message.starts_with("config/blue.toml, line 2: is not valid TOML"),
+        "{message}"
+    );
+    assert_eq!(message.lines().count(), 1, "{message}");
+}
+
+#[test]
+fn relations_between_keys_are_checked() {
+    let message = refusal("[hand]\ntrigger_open = 0.7\n");
+    assert!(
+        message.contains("line 2: key `hand.trigger_open`: must be less than hand.trigger_close"),
+        "{message}"
+    );
+    let message = refusal("[tracking]\nrate_hz = 75\n");
+    assert!(
+        message.contains("line 2: key `tracking.rate_hz`: must divide physics.step_hz"),
+        "{message}"
+    );
+}
+
+#[test]
+fn arguments_are_toml_or_strings_and_errors_quote_them() {
+    let load =
+        |argument: &str| Config::load(&folder(), "alley", Some("blue"), &[argument.to_owned()]);
+    assert_eq!(
+        load("objects.shape=ellipsoid").unwrap().objects.shape,
+        ObjectShape::Ellipsoid
+    );
+    assert_eq!(
+        load("display.profile=1996")
+            .unwrap_err()
+            .to_string()
+            .split(':')
+            .next(),
+        Some("--set display.profile=1996")
+    );
+    assert_eq!(
+        load("objects.friction_rate = 0.25")
+            .unwrap()
+            .objects
+            .friction_rate,
+        0.25
+    );
+    let message = load("objects.friction_rate=2").unwrap_err().to_string();
+    assert!(
+        message.starts_with(
+            "--set objects.friction_rate=2: key `objects.friction_rate`: 2 is out of range"
+        ),
+        "{message}"
+    );
+    for bad in ["objects.friction_rate", "=1", "a..b=1", "a=1\nb=2"] {
+        let message = load(bad).unwrap_err().to_string();
+        assert!(
+            message.contains("is not of the form key=value"),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn a_missing_file_is_named() {
+    let message = Config::load(&folder(), "no-such-scene", None, &[])
+        .unwrap_err()
+        .to_string();
+    assert!(
+        message.contains("no-such-scene.toml: cannot be read"),
+        "{message}"
+    );
+}
+
+#[test]
+fn numbers_round_trip_through_json() {
+    let config = default_config();
+    let text = serde_json::to_string(&config).unwrap();
+    assert_eq!(serde_json::from_str::<Config>(&text).unwrap(), config);
+}

@@ -1,0 +1,119 @@
+//! Games of bowling: which button's game is played, what the next delivery is, what the sheets say.
+
+use crate::components::Held;
+use crate::condition::Button;
+use crate::event::EventKind;
+use crate::room::Room;
+use crate::score::{Delivery, Roll, ScoreSheet};
+use crate::throw::Stage;
+use crate::{Game, hand::Hand};
+
+/// A press that waits for its confirmation.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pending {
+    pub button: Button,
+    pub until: u64,
+}
+
+impl Game {
+    /// The next delivery of the game that is played.
+    pub(crate) fn delivery(&self) -> Option<Delivery> {
+        self.playing
+            .and_then(|button| self.sheet(button).next_delivery())
+    }
+
+    /// Acts on presses: starts a game, or asks for a second press while one is played.
+    pub(crate) fn press(&mut self) {
+        if self
+            .pending
+            .is_some_and(|pending| self.steps > pending.until)
+        {
+            self.pending = None;
+        }
+        for button in std::mem::take(&mut self.pressed) {
+            self.record(EventKind::Pressed { button });
+            let is_confirmed = self.pending.is_some_and(|pending| pending.button == button);
+            if self.playing.is_none() || is_confirmed {
+                self.start_game(button);
+            } else {
+                let wait = self.room.steps_in(self.room.config.rules.confirm_within_s);
+                self.pending = Some(Pending {
+                    button,
+                    until: self.steps + wait,
+                });
+                self.record(EventKind::ConfirmAsked { button });
+            }
+        }
+    }
+
+    /// Builds the room of a button's condition and begins a new sheet. What the hand held stays behind in the old room.
+    fn start_game(&mut self, button: Button) {
+        let config = self.conditions.of(button);
+        self.room = Room::new(config)
+            .expect("every condition's room was built once when the session began");
+        self.stage = Stage::Ready {
+            disturbed_since: None,
+        };
+        self.pending = None;
+        self.playing = Some(button);
+        *self.sheet_mut(button) = ScoreSheet::new(self.frames);
+        let none: Option<Held> = None;
+        self.hand = Hand {
+            held: none,
+            let_go: None,
+            candidate: None,
+            before: None,
+            ..std::mem::take(&mut self.hand)
+        };
+        self.record(EventKind::GameStarted { button });
+    }
+
+    /// Writes a delivery on the sheet; returns whether the next one needs a full rack.
+    pub(crate) fn score(&mut self, fallen: u8, is_foul: bool) -> bool {
+        let (Some(button), Some(delivery)) = (self.playing, self.delivery()) else {
+            // Practice: one ball at ten pins, again and again.
+            return true;
+        };
+        let roll = Roll {
+            fallen: fallen.min(delivery.standing),
+            foul: is_foul,
+        };
+        let sheet = self.sheet_mut(button);
+        sheet
+            .add(roll)
+            .expect("no more pins are counted than stood");
+        let next = sheet.next_delivery();
+        let frame_is_over = next.is_none_or(|next| next.frame != delivery.frame);
+        let marks = sheet.marks().pop().unwrap_or_default();
+        let total = sheet.total();
+        let (frame, ball) = (delivery.frame, delivery.ball);
+        self.record(EventKind::Rolled {
+            button,
+            frame,
+            ball,
+            roll,
+        });
+        if frame_is_over {
+            self.record(EventKind::FrameScored {
+                button,
+                frame,
+                marks,
+                total,
+            });
+        }
+        if next.is_none() {
+            self.record(EventKind::GameOver { button, total });
+            self.playing = None;
+            self.pending = None;
+        }
+        next.is_none_or(|next| next.standing == crate::score::PINS)
+    }
+
+    fn sheet(&self, button: Button) -> &ScoreSheet {
+        &self.sheets[button as usize]
+    }
+
+    fn sheet_mut(&mut self, button: Button) -> &mut ScoreSheet {
+        &mut self.sheets[button as usize]
+    }
+}

@@ -1,0 +1,394 @@
+//! One room under one condition: the physics world, the entities in it, and who is who.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use glam::DVec3;
+use hecs::Entity;
+use physics::{
+    Body, BodyDef, BodyId, Compound, MassProperties, Material, Motion, Pose, Response, Settings,
+    Shape, ShapeError, World,
+};
+
+use crate::GameError;
+use crate::alley;
+use crate::components::{
+    Ball, Grabbable, Journey, Painted, Physical, Pin, PinKeeper, PushButton, Shown,
+};
+use crate::config::{Config, ResponseModel};
+use crate::pin_shape::{pin_compound, pin_mass};
+use crate::visible::Model;
+
+/// Thickness of the sweep bar along the lane [m].
+const BAR_THICKNESS: f64 = 0.05;
+
+/// How far a button's body reaches into the desk when it is up [m].
+const BUTTON_ROOT: f64 = 0.01;
+
+/// Everything that is built anew when a game starts in another condition.
+pub(crate) struct Room {
+    pub config: Config,
+    pub world: World,
+    pub ecs: hecs::World,
+    /// By spot, pin 1 first.
+    pub pins: Vec<Entity>,
+    /// By place on the rack.
+    pub balls: Vec<Entity>,
+    /// Red, Blue.
+    pub buttons: [Entity; 2],
+    pub hand: Entity,
+    pub bar: Entity,
+    owners: BTreeMap<BodyId, Entity>,
+    /// Boxes that never move, for keeping a held thing out of them.
+    pub obstacles: Vec<(Pose, DVec3, Shape)>,
+}
+
+impl Room {
+    /// Builds the room that a configuration describes: pins on their spots, balls on the rack.
+    ///
+    /// # Errors
+    /// When physics refuses a setting or a size.
+    pub fn new(config: &Config) -> Result<Self, GameError> {
+        let mut builder = Builder::new(config)?;
+        let obstacles = builder.building()?;
+        let pins = builder.pins()?;
+        let balls = builder.balls()?;
+        let buttons = [
+            builder.button(Model::RedButton, -1.0)?,
+            builder.button(Model::BlueButton, 1.0)?,
+        ];
+        let hand = builder.hand()?;
+        let bar = builder.bar()?;
+        let Builder {
+            world, ecs, owners, ..
+        } = builder;
+        Ok(Self {
+            config: config.clone(),
+            world,
+            ecs,
+            pins,
+            balls,
+            buttons,
+            hand,
+            bar,
+            owners,
+            obstacles,
+        })
+    }
+
+    /// A component of an entity that has it.
+    pub fn get<T: hecs::Component + Copy>(&self, entity: Entity) -> T {
+        *self
+            .ecs
+            .get::<&T>(entity)
+            .expect("entities keep the components they are built with")
+    }
+
+    /// Writes a component back.
+    pub fn set<T: hecs::Component + Copy>(&self, entity: Entity, value: T) {
+        *self
+            .ecs
+            .get::<&mut T>(entity)
+            .expect("entities keep the components they are built with") = value;
+    }
+
+    /// The body of an entity that has one.
+    pub fn id(&self, entity: Entity) -> BodyId {
+        self.get::<Physical>(entity).0
+    }
+
+    /// The body of an entity that has one.
+    pub fn body(&self, entity: Entity) -> &Body {
+        self.world.body(self.id(entity))
+    }
+
+    /// Whose body this is.
+    pub fn owner(&self, body: BodyId) -> Entity {
+        self.owners[&body]
+    }
+
+    /// What an entity looks like.
+    pub fn model(&self, entity: Entity) -> Model {
+        self.get::<Shown>(entity).model
+    }
+
+    /// Hides or shows an entity.
+    pub fn set_hidden(&self, entity: Entity, is_hidden: bool) {
+        let mut shown: Shown = self.get(entity);
+        shown.is_hidden = is_hidden;
+        self.set(entity, shown);
+    }
+
+    /// Gives a body to the laws of physics, at rest.
+    pub fn let_loose(&mut self, entity: Entity) {
+        let id = self.id(entity);
+        self.world.set_motion(id, Motion::Dynamic);
+        self.world.set_velocity(id, DVec3::ZERO, DVec3::ZERO);
+        self.world.set_collides(id, true);
+    }
+
+    /// Takes a body out of the laws of physics: it goes where it is driven and passes through everything.
+    pub fn take_out(&mut self, entity: Entity) {
+        let id = self.id(entity);
+        self.world.set_motion(id, Motion::Driven);
+        self.world.set_velocity(id, DVec3::ZERO, DVec3::ZERO);
+        self.world.set_collides(id, false);
+    }
+
+    /// Physics steps in a time [s].
+    pub fn steps_in(&self, seconds: f64) -> u64 {
+        (seconds * self.config.physics.step_hz).round() as u64
+    }
+
+    /// The upright pose of a pin whose base stands at a point of the deck.
+    pub fn upright(&self, x: f64, z: f64) -> Pose {
+        Pose::from_position(DVec3::new(x, self.config.pin.cg_height_m, z))
+    }
+}
+
+/// A room while it is built.
+struct Builder<'a> {
+    config: &'a Config,
+    world: World,
+    ecs: hecs::World,
+    owners: BTreeMap<BodyId, Entity>,
+}
+
+impl<'a> Builder<'a> {
+    fn new(config: &'a Config) -> Result<Self, GameError> {
+        let physics = &config.physics;
+        let settings = Settings {
+            step_hz: physics.step_hz,
+            gravity: DVec3::NEG_Y * physics.gravity_mps2,
+            response: match physics.response {
+                ResponseModel::UnoSlater => Response::UnoSlater,
+                ResponseModel::Guarded => Response::Guarded,
+            },
+            iteration_cap: physics.iteration_cap,
+            friction_reference_s: physics.friction_reference_s,
+            sleeping: physics.sleeping,
+        };
+        Ok(Self {
+            config,
+            world: World::new(settings)?,
+            ecs: hecs::World::new(),
+            owners: BTreeMap::new(),
+        })
+    }
+
+    /// Adds a body of the condition's one material, and the entity it belongs to.
+    fn body(
+        &mut self,
+        compound: Arc<Compound>,
+        motion: Motion,
+        mass: MassProperties,
+        pose: Pose,
+        shown: Shown,
+    ) -> Entity {
+        let objects = &self.config.objects;
+        let material = Material {
+            elasticity: objects.elasticity,
+            friction_rate: objects.friction_rate,
+        };
+        let id = self.world.add(BodyDef {
+            compound,
+            motion,
+            mass,
+            material,
+            pose,
+            linear_velocity: DVec3::ZERO,
+            angular_velocity: DVec3::ZERO,
+        });
+        let entity = self.ecs.spawn((Physical(id), shown));
+        self.owners.insert(id, entity);
+        entity
+    }
+
+    fn building(&mut self) -> Result<Vec<(Pose, DVec3, Shape)>, ShapeError> {
+        let mut obstacles = Vec::new();
+        for part in alley::parts(self.config) {
+            let shown = Shown {
+                model: part.model,
+                size: part.size,
+                body_from_model: Pose::IDENTITY,
+                is_hidden: false,
+            };
+            if part.is_solid {
+                let shape = Shape::cuboid(part.size / 2.0)?;
+                let compound = Arc::new(Compound::single(shape));
+                self.body(compound, Motion::Fixed, immovable(), part.pose, shown);
+                obstacles.push((part.pose, part.size / 2.0, shape));
+            } else {
+                self.ecs.spawn((Painted(part.pose), shown));
+            }
+        }
+        Ok(obstacles)
+    }
+
+    fn pins(&mut self) -> Result<Vec<Entity>, ShapeError> {
+        let pin = &self.config.pin;
+        let compound = Arc::new(pin_compound(pin, self.config.objects.shape)?);
+        let spots = alley::pin_spots(&self.config.lane);
+        let mut pins = Vec::new();
+        for (number, spot) in (1..).zip(spots) {
+            let pose = Pose::from_position(spot + DVec3::Y * pin.cg_height_m);
+            let width = 2.0 * pin.parts.belly_radius_m;
+            let shown = Shown {
+                model: Model::Pin(number),
+                size: DVec3::new(width, pin.height_m, width),
+                body_from_model: Pose::from_position(DVec3::NEG_Y * pin.cg_height_m),
+                is_hidden: false,
+            };
+            let entity = self.body(
+                compound.clone(),
+                Motion::Dynamic,
+                pin_mass(pin),
+                pose,
+                shown,
+            );
+            let state = Pin {
+                number,
+                spot,
+                ready: Some(pose),
+                keeper: PinKeeper::Nobody,
+            };
+            self.add(entity, (state, Grabbable));
+            pins.push(entity);
+        }
+        Ok(pins)
+    }
+
+    fn balls(&mut self) -> Result<Vec<Entity>, ShapeError> {
+        let homes = alley::ball_homes(self.config);
+        let mut balls = Vec::new();
+        for ((index, ball), home) in (0..).zip(&self.config.balls).zip(homes) {
+            let radius = ball.radius_m();
+            let compound = Arc::new(Compound::single(Shape::sphere(radius)?));
+            let inertia = DVec3::splat(ball.mass_kg * ball.rg_m * ball.rg_m);
+            let mass = MassProperties {
+                mass: ball.mass_kg,
+                inertia,
+            };
+            let shown = Shown {
+                model: Model::Ball(index),
+                size: DVec3::splat(ball.diameter_m),
+                body_from_model: Pose::IDENTITY,
+                is_hidden: false,
+            };
+            let entity = self.body(
+                compound,
+                Motion::Dynamic,
+                mass,
+                Pose::from_position(home),
+                shown,
+            );
+            let state = Ball {
+                index,
+                home,
+                radius,
+                is_beyond: false,
+                foul: None,
+                astray_since: None,
+                journey: Journey::InRoom,
+            };
+            self.add(entity, (state, Grabbable));
+            balls.push(entity);
+        }
+        Ok(balls)
+    }
+
+    fn button(&mut self, model: Model, side: f64) -> Result<Entity, ShapeError> {
+        let desk = &self.config.desk;
+        let half_height = (desk.button_travel_m + BUTTON_ROOT) / 2.0;
+        let compound = Arc::new(Compound::single(Shape::cylinder(
+            desk.button_radius_m,
+            half_height,
+        )?));
+        let width = 2.0 * desk.button_radius_m;
+        let shown = Shown {
+            model,
+            size: DVec3::new(width, 2.0 * half_height, width),
+            body_from_model: Pose::IDENTITY,
+            is_hidden: false,
+        };
+        let state = PushButton {
+            foot: alley::button_foot(self.config, side),
+            depression: 0.0,
+            is_pressed: false,
+        };
+        let pose = button_pose(self.config, &state);
+        let entity = self.body(compound, Motion::Driven, immovable(), pose, shown);
+        self.add(entity, (state,));
+        Ok(entity)
+    }
+
+    fn hand(&mut self) -> Result<Entity, ShapeError> {
+        let radius = self.config.hand.radius_m;
+        let shown = Shown {
+            model: Model::Hand,
+            size: DVec3::splat(2.0 * radius),
+            body_from_model: Pose::IDENTITY,
+            is_hidden: true,
+        };
+        let compound = Arc::new(Compound::single(Shape::sphere(radius)?));
+        let entity = self.body(
+            compound,
+            Motion::Driven,
+            immovable(),
+            Pose::from_position(DVec3::Y),
+            shown,
+        );
+        let id = self
+            .ecs
+            .get::<&Physical>(entity)
+            .expect("it was just made")
+            .0;
+        self.world.set_collides(id, false);
+        Ok(entity)
+    }
+
+    fn bar(&mut self) -> Result<Entity, ShapeError> {
+        let size = DVec3::new(
+            2.0 * alley::kickback_x(self.config) - 0.02,
+            self.config.pinsetter.bar_height_m,
+            BAR_THICKNESS,
+        );
+        let shown = Shown {
+            model: Model::SweepBar,
+            size,
+            body_from_model: Pose::IDENTITY,
+            is_hidden: false,
+        };
+        let compound = Arc::new(Compound::single(Shape::cuboid(size / 2.0)?));
+        let pose = crate::pinsetter::bar_at_rest(self.config);
+        let entity = self.body(compound, Motion::Driven, immovable(), pose, shown);
+        let id = self
+            .ecs
+            .get::<&Physical>(entity)
+            .expect("it was just made")
+            .0;
+        self.world.set_collides(id, false);
+        Ok(entity)
+    }
+
+    fn add(&mut self, entity: Entity, components: impl hecs::DynamicBundle) {
+        self.ecs
+            .insert(entity, components)
+            .expect("it was just made");
+    }
+}
+
+/// Where a button's body is, for how far it is pressed.
+pub(crate) fn button_pose(config: &Config, button: &PushButton) -> Pose {
+    let top = config.desk.button_travel_m - button.depression;
+    let half_height = (config.desk.button_travel_m + BUTTON_ROOT) / 2.0;
+    Pose::from_position(button.foot + DVec3::Y * (top - half_height))
+}
+
+/// Mass of what is fixed or driven: physics asks for one and does not use it.
+fn immovable() -> MassProperties {
+    MassProperties {
+        mass: 1.0,
+        inertia: DVec3::ONE,
+    }
+}
