@@ -1,0 +1,12 @@
+//! What arrives in the pixels, on every driver that is installed.
+
+/// Vulkan and GL give the same picture, and each the same picture twice.
+mod drivers;
+/// Lights, shadows, tone and colour.
+mod light;
+/// Where points land: fields of view, eyes, depth, edges.
+mod projection;
+/// Devices, scenes and measurements for the others.
+mod support;
+/// Textures and text.
+mod surface;
