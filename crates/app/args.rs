@@ -1,0 +1,184 @@
+//! The command line: what a person may ask for, and what is refused before anything starts.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+const EXAMPLES: &str = "\
+Examples:
+  bowling play                            headset, else window, else a scripted game without a screen
+  bowling play --device desk              bowl with the mouse (F1 in the window shows the keys)
+  bowling play --offscreen --frames 3     a short scripted recording, no screen needed
+  bowling play --set lane.length_m=18.3   change one setting for this run
+  bowling replay out/2026-01-31T10-15-00Z-seed1   check a recording to the last bit";
+
+/// Immersive pin bowling for presence experiments.
+///
+/// A hand throws a ball at ten pins, under two versions of the physics that are
+/// called Red and Blue. Every run leaves a folder with all that happened in it.
+#[derive(Debug, Parser)]
+#[command(name = "bowling", version, after_help = EXAMPLES, disable_help_subcommand = true)]
+pub struct Arguments {
+    /// What to do; nothing prints the help.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+
+    /// Folder that holds config/, assets/ and shaders/ [default: found beside the program].
+    #[arg(
+        long,
+        global = true,
+        hide = true,
+        env = "BOWLING_ROOT",
+        value_name = "DIR"
+    )]
+    pub root: Option<PathBuf>,
+}
+
+/// The two things that the program does.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Bowl: a game under Red and one under Blue, recorded into a folder.
+    ///
+    /// Takes the headset if there is one, else a window, else lets a scripted participant play
+    /// without a screen, and says which and why. The folder then holds the journal (everything
+    /// that the game consumed), the motion of head and hand, both score sheets, and per game a
+    /// contact sheet and a video of highlights, for both eyes.
+    Play(PlayArguments),
+    /// Play a recording again from its inputs and check that the same came out.
+    ///
+    /// Fails when the final state, a score or the motion table differs from what was recorded.
+    Replay(ReplayArguments),
+}
+
+/// Who or what bowls.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum DeviceChoice {
+    /// A virtual reality headset through OpenXR.
+    Headset,
+    /// Mouse, keyboard or gamepad in a window.
+    Desk,
+    /// A simulated participant, the same for the same seed.
+    Script,
+}
+
+/// Which display is imitated in pictures and videos.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum DisplayChoice {
+    /// The field of view and resolution of a present-day headset.
+    Modern,
+    /// The head-mounted display of the 1997 paper: 75 by 40 degrees, 704x480 relayed to 360x240.
+    #[value(name = "1996")]
+    Nineties,
+}
+
+impl DisplayChoice {
+    /// The profile's name in the configuration (`display.profile`).
+    pub fn name(self) -> &'static str {
+        match self {
+            DisplayChoice::Modern => "modern",
+            DisplayChoice::Nineties => "1996",
+        }
+    }
+}
+
+/// Arguments of `bowling play`.
+#[derive(Debug, Args)]
+pub struct PlayArguments {
+    /// Who bowls [default: the first of headset, desk, script that is there].
+    #[arg(long, value_enum)]
+    pub device: Option<DeviceChoice>,
+
+    /// Open no window; the scripted participant plays and pictures go to files.
+    #[arg(long)]
+    pub offscreen: bool,
+
+    /// Bowling frames per game.
+    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=10))]
+    pub frames: u32,
+
+    /// Seed of the scripted participant's scatter; the same seed gives the same game.
+    #[arg(
+        long,
+        value_name = "N",
+        allow_negative_numbers = true,
+        default_value_t = 1
+    )]
+    pub seed: u64,
+
+    /// Folder for the recording; must not hold one already [default: out/TIME-seedN].
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+
+    /// Make no videos of highlights.
+    #[arg(long)]
+    pub no_video: bool,
+
+    /// Scene to play in: a file of config/scenes, without its ending.
+    #[arg(long, value_name = "NAME")]
+    pub scene: Option<String>,
+
+    /// Display to imitate in pictures and videos [default: display.profile of the configuration].
+    #[arg(long, value_enum)]
+    pub display: Option<DisplayChoice>,
+
+    /// Change one setting in both conditions; may be given several times.
+    ///
+    /// Takes precedence over conditions, scene and defaults. The settings are the keys of
+    /// config/default.toml, with dots between table and key.
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub settings: Vec<String>,
+}
+
+/// Arguments of `bowling replay`.
+#[derive(Debug, Args)]
+pub struct ReplayArguments {
+    /// The recording's folder, as printed at the end of `bowling play`.
+    #[arg(value_name = "DIR")]
+    pub folder: PathBuf,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    fn play(arguments: &[&str]) -> Result<PlayArguments, clap::Error> {
+        let all = ["bowling", "play"].iter().chain(arguments);
+        match Arguments::try_parse_from(all)?.command {
+            Some(Command::Play(play)) => Ok(play),
+            other => panic!("expected play, got {other:?}"),
+        }
+    }
+
+    #[test]
+    fn arguments_are_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn play_defaults_to_two_whole_games() {
+        let play = play(&[]).expect("no argument is required");
+        assert_eq!((play.frames, play.seed), (10, 1));
+        assert!(play.device.is_none() && !play.offscreen && !play.no_video);
+    }
+
+    #[test]
+    fn frames_out_of_range_are_refused_with_the_range() {
+        for frames in ["0", "11", "-1", "ten"] {
+            let error = play(&["--frames", frames]).expect_err(frames).to_string();
+            assert!(error.contains("--frames"), "{error}");
+        }
+    }
+
+    #[test]
+    fn settings_accumulate_in_order() {
+        let play = play(&["--set", "a.b=1", "--set", "c=2"]).expect("two settings");
+        assert_eq!(play.settings, ["a.b=1", "c=2"]);
+    }
+
+    #[test]
+    fn display_1996_is_spelt_as_a_year() {
+        let play = play(&["--display", "1996"]).expect("a known display");
+        assert_eq!(play.display.map(DisplayChoice::name), Some("1996"));
+    }
+}

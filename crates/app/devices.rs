@@ -1,0 +1,14 @@
+//! Devices: what bowls. Each yields one [`Input`] per displayed frame.
+
+pub mod script;
+
+use game::{Game, Input};
+
+/// Something that a participant holds or is.
+pub trait Device {
+    /// The input of the next frame; `game` is as the last frame left it, and is what can be seen.
+    fn next(&mut self, game: &Game) -> Input;
+
+    /// True when there is nothing left to do for it, or it wants to stop.
+    fn is_done(&self) -> bool;
+}

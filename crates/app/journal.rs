@@ -1,0 +1,234 @@
+//! The journal: everything that the game consumed, one JSON line each, in the order it happened.
+//!
+//! A line is written before the game sees it, so that a journal always reaches as far as the game
+//! did. Lines carry a number and a running check over all lines so far: a line that is missing,
+//! moved or changed is named when the journal is read.
+
+mod read;
+mod write;
+
+use game::{Conditions, Input, Tracked, Velocity};
+use glam::{DQuat, DVec3};
+use physics::Pose;
+use serde::{Deserialize, Serialize};
+
+pub use read::{Recording, read};
+pub use write::Journal;
+
+use crate::boundary::Refused;
+
+/// Version of the lines' meaning; a program refuses journals of another one.
+pub const SCHEMA: u32 = 1;
+
+/// One line's content.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Entry {
+    /// The first line.
+    Header(Box<Header>),
+    /// What the game consumed in one frame.
+    Input(InputLine),
+    /// Something that happened in the frame of the last input line.
+    Event(serde_json::Value),
+    /// The last line of a session that was closed in order.
+    End(End),
+}
+
+/// What a session was.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Header {
+    /// [`SCHEMA`] of the program that wrote it.
+    pub schema: u32,
+    /// Version of that program.
+    pub program: String,
+    /// Commit that it was built from, or `unknown`.
+    pub commit: String,
+    /// Who bowled: `desk` or `script`.
+    pub device: String,
+    /// Seed of the scripted participant.
+    pub seed: u64,
+    /// Frames per second of the device [Hz].
+    pub rate_hz: f64,
+    /// Display profile of pictures and videos.
+    pub display: String,
+    /// Bowling frames per game.
+    pub frames: u32,
+    /// Scene that the configurations came from.
+    pub scene: String,
+    /// Resolved settings of the room and of both conditions.
+    pub conditions: Conditions,
+}
+
+/// How a session ended.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct End {
+    /// State hash of the game, sixteen hexadecimal digits.
+    pub hash: String,
+    /// Input lines of the whole journal.
+    pub inputs: u64,
+    /// False when somebody ended the session before both games were over.
+    pub complete: bool,
+    /// Final or last score under Red; `None` when no such game was started.
+    pub red: Option<u32>,
+    /// The same under Blue.
+    pub blue: Option<u32>,
+    /// Readings that the device boundary refused.
+    pub refused: Refused,
+}
+
+/// A state hash as it is printed and recorded.
+pub fn hash_text(hash: u64) -> String {
+    format!("{hash:016x}")
+}
+
+/// One input as an array: steps, buttons, trigger, head, hand.
+///
+/// Buttons are a sum: 1 walk forward, 2 walk back, 4 Red, 8 Blue. Head and hand are `null` when not
+/// tracked, else position, rotation (x, y, z, w) and, when measured, linear and angular velocity.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct InputLine(u32, u8, f64, Option<TrackedLine>, Option<TrackedLine>);
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+enum TrackedLine {
+    Moving([f64; 13]),
+    Still([f64; 7]),
+}
+
+impl From<&Input> for InputLine {
+    fn from(input: &Input) -> Self {
+        let buttons = [
+            input.walk_forward,
+            input.walk_back,
+            input.press_red,
+            input.press_blue,
+        ];
+        let sum = buttons
+            .iter()
+            .enumerate()
+            .map(|(bit, pressed)| u8::from(*pressed) << bit)
+            .sum();
+        let (head, hand) = (input.head.as_ref(), input.hand.as_ref());
+        InputLine(
+            input.steps,
+            sum,
+            input.trigger,
+            head.map(TrackedLine::from),
+            hand.map(TrackedLine::from),
+        )
+    }
+}
+
+impl From<&InputLine> for Input {
+    fn from(line: &InputLine) -> Self {
+        let InputLine(steps, buttons, trigger, head, hand) = line;
+        let pressed = |bit: u8| buttons & (1 << bit) != 0;
+        Input {
+            head: head.as_ref().map(Tracked::from),
+            hand: hand.as_ref().map(Tracked::from),
+            trigger: *trigger,
+            walk_forward: pressed(0),
+            walk_back: pressed(1),
+            press_red: pressed(2),
+            press_blue: pressed(3),
+            steps: *steps,
+        }
+    }
+}
+
+impl From<&Tracked> for TrackedLine {
+    fn from(tracked: &Tracked) -> Self {
+        let p = tracked.pose.position;
+        let r = tracked.pose.rotation;
+        match tracked.velocity {
+            None => TrackedLine::Still([p.x, p.y, p.z, r.x, r.y, r.z, r.w]),
+            Some(Velocity {
+                linear: v,
+                angular: w,
+            }) => TrackedLine::Moving([
+                p.x, p.y, p.z, r.x, r.y, r.z, r.w, v.x, v.y, v.z, w.x, w.y, w.z,
+            ]),
+        }
+    }
+}
+
+impl From<&TrackedLine> for Tracked {
+    fn from(line: &TrackedLine) -> Self {
+        let (numbers, velocity): (&[f64], _) = match line {
+            TrackedLine::Still(numbers) => (numbers, None),
+            TrackedLine::Moving(numbers) => (
+                numbers,
+                Some(Velocity {
+                    linear: DVec3::from_slice(&numbers[7..]),
+                    angular: DVec3::from_slice(&numbers[10..]),
+                }),
+            ),
+        };
+        Tracked {
+            pose: Pose {
+                position: DVec3::from_slice(numbers),
+                rotation: DQuat::from_slice(&numbers[3..]),
+            },
+            velocity,
+        }
+    }
+}
+
+/// The running check: FNV-1a, 32 bits, over all lines' contents so far.
+///
+/// It finds damage and hand edits by mistake; it is no signature.
+fn continue_check(check: u32, content: &str) -> u32 {
+    content.bytes().fold(check, |check, byte| {
+        (check ^ u32::from(byte)).wrapping_mul(0x0100_0193)
+    })
+}
+
+/// FNV-1a's offset basis.
+const FIRST_CHECK: u32 = 0x811c_9dc5;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn input_line_keeps_every_bit_of_an_input() {
+        let tracked = Tracked {
+            pose: Pose {
+                position: DVec3::new(0.1, -1e-17, 3.0),
+                rotation: DQuat::from_rotation_z(0.3),
+            },
+            velocity: Some(Velocity {
+                linear: DVec3::new(1.0 / 3.0, 2.0, 3.0),
+                angular: DVec3::NEG_X,
+            }),
+        };
+        let input = Input {
+            head: Some(Tracked {
+                velocity: None,
+                ..tracked
+            }),
+            hand: Some(tracked),
+            trigger: 0.1 + 0.2,
+            walk_forward: true,
+            walk_back: false,
+            press_red: false,
+            press_blue: true,
+            steps: 8,
+        };
+        let text = serde_json::to_string(&InputLine::from(&input)).expect("plain numbers");
+        let line: InputLine = serde_json::from_str(&text).expect("just written");
+        assert_eq!(Input::from(&line), input);
+        assert!(text.starts_with("[8,9,0.30000000000000004,["), "{text}");
+    }
+
+    #[test]
+    fn continue_check_agrees_with_the_published_value() {
+        // FNV-1a test vectors by Landon Curt Noll: "foobar" hashes to 0xbf9cf968.
+        assert_eq!(
+            continue_check(continue_check(FIRST_CHECK, "foo"), "bar"),
+            0xbf9c_f968
+        );
+    }
+}

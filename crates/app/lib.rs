@@ -1,0 +1,65 @@
+//! The `bowling` program: who bowls, what is recorded, what is drawn.
+//!
+//! Entry points: [`run`] reads the command line; [`play`] and [`replay`] are the two commands; a
+//! [`session::Session`] takes one input per displayed frame from any device.
+
+pub mod args;
+pub mod boundary;
+pub mod choose;
+pub mod convert;
+pub mod devices;
+pub mod journal;
+pub mod motion;
+pub mod output;
+pub mod pictures;
+pub mod play;
+pub mod random;
+pub mod rehearsal;
+pub mod replay;
+pub mod root;
+pub mod session;
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use anyhow::Result;
+use clap::{CommandFactory, Parser};
+
+use args::{Arguments, Command};
+
+/// Exit code for arguments that cannot be used.
+const BAD_ARGUMENTS: u8 = 2;
+
+/// Runs the program with its command line, the program's own name first.
+///
+/// Returns 0, 1 for a failure, or 2 for arguments that cannot be used.
+pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            let code = if error.use_stderr() { BAD_ARGUMENTS } else { 0 };
+            // A closed stream leaves nothing to tell.
+            let _ = error.print();
+            return ExitCode::from(code);
+        }
+    };
+    match obey(&arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            // The whole chain in one line: what was tried, then why it failed.
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn obey(arguments: &Arguments) -> Result<()> {
+    match &arguments.command {
+        None => {
+            Arguments::command().print_help()?;
+            Ok(())
+        }
+        Some(Command::Play(play)) => play::play(play, &root::find(arguments.root.as_deref())?),
+        Some(Command::Replay(arguments)) => replay::replay(&arguments.folder),
+    }
+}

@@ -1,0 +1,171 @@
+//! The motion table: head and hand in the world, one row per frame of the device.
+//!
+//! Derived: the same code makes it while a session runs and when a journal is played again, so a
+//! table that does not agree with its journal was changed.
+
+use std::fmt::Write;
+
+use game::{Game, Input};
+use physics::Pose;
+
+/// Column names. World frame: origin at the centre of the foul line on the lane's surface, x to the
+/// bowler's right, y up, the lane along -z; quaternions are `world_from_head` and `world_from_hand`.
+pub fn heading() -> String {
+    let mut columns = vec!["time_s".to_owned()];
+    for part in ["head", "hand"] {
+        columns.extend(
+            ["x_m", "y_m", "z_m", "qx", "qy", "qz", "qw"]
+                .map(|column| format!("{part}_world_{column}")),
+        );
+    }
+    columns.extend(["trigger".to_owned(), "walking".to_owned()]);
+    columns.join("\t")
+}
+
+/// The row for the frame that `game` has just finished with `input`; `n/a` where not tracked.
+///
+/// Metres to the micrometre, `walking` is 1 forward, -1 backward, 0 neither.
+pub fn row(game: &Game, input: &Input) -> String {
+    let mut row = format!("{:.6}", game.time());
+    append_pose(&mut row, game.head_pose_world());
+    append_pose(&mut row, game.hand_pose_world());
+    let walking = i8::from(input.walk_forward) - i8::from(input.walk_back);
+    write!(row, "\t{:.4}\t{walking}", input.trigger).expect("a String takes everything");
+    row
+}
+
+fn append_pose(row: &mut String, pose: Option<Pose>) {
+    let Some(pose) = pose else {
+        row.push_str(&"\tn/a".repeat(7));
+        return;
+    };
+    for number in pose
+        .position
+        .to_array()
+        .into_iter()
+        .chain(pose.rotation.to_array())
+    {
+        // Adding zero turns -0 into 0.
+        write!(row, "\t{:.6}", number + 0.0).expect("a String takes everything");
+    }
+}
+
+/// Compares a table as it lies on disk with one line after another as it should be.
+#[derive(Debug)]
+pub struct Comparison<'a> {
+    lines: std::str::Lines<'a>,
+    number: usize,
+}
+
+impl<'a> Comparison<'a> {
+    /// Starts with the heading.
+    ///
+    /// # Errors
+    /// A sentence without the file's name when the heading differs.
+    pub fn new(table: &'a str) -> Result<Self, String> {
+        let mut comparison = Comparison {
+            lines: table.lines(),
+            number: 0,
+        };
+        comparison.expect_line(&heading())?;
+        Ok(comparison)
+    }
+
+    /// Compares the next line.
+    ///
+    /// # Errors
+    /// A sentence with the line's number when it differs or is missing.
+    pub fn expect_line(&mut self, expected: &str) -> Result<(), String> {
+        self.number += 1;
+        match self.lines.next() {
+            Some(line) if line == expected => Ok(()),
+            Some(line) => Err(format!(
+                "line {}: the motion table does not agree with the journal: it says `{}` where the journal gives `{}`",
+                self.number,
+                first_difference(line, expected),
+                first_difference(expected, line)
+            )),
+            None => Err(format!(
+                "line {}: the motion table ends here, but the journal goes on",
+                self.number
+            )),
+        }
+    }
+
+    /// Makes sure that nothing follows.
+    ///
+    /// # Errors
+    /// A sentence with the line's number when something does.
+    pub fn expect_end(mut self) -> Result<(), String> {
+        match self.lines.next() {
+            None => Ok(()),
+            Some(_) => Err(format!(
+                "line {}: the motion table goes on where the journal ends",
+                self.number + 1
+            )),
+        }
+    }
+}
+
+/// The first column of `line` that differs from `other`.
+fn first_difference<'a>(line: &'a str, other: &str) -> &'a str {
+    let mut others = other.split('\t');
+    line.split('\t')
+        .find(|column| others.next() != Some(column))
+        .unwrap_or("")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DQuat, DVec3};
+
+    #[test]
+    fn append_pose_writes_seven_columns_tracked_or_not() {
+        for pose in [
+            None,
+            Some(Pose {
+                position: DVec3::new(-0.0, 1.5, -1e-9),
+                rotation: DQuat::IDENTITY,
+            }),
+        ] {
+            let mut row = String::new();
+            append_pose(&mut row, pose);
+            assert_eq!(row.matches('\t').count(), 7, "{row}");
+        }
+        assert_eq!(heading().split('\t').count(), 1 + 2 * 7 + 2);
+    }
+
+    #[test]
+    fn comparison_names_line_and_column_of_the_first_difference() {
+        let table = format!("{}\n0.1\t2\t3\n0.2\t2\t4\n", heading());
+        let mut comparison = Comparison::new(&table).expect("the heading agrees");
+        comparison.expect_line("0.1\t2\t3").expect("agrees");
+        let problem = comparison
+            .expect_line("0.2\t2\t5")
+            .expect_err("a column differs");
+        assert!(
+            problem.starts_with("line 3:") && problem.contains("`4`") && problem.contains("`5`"),
+            "{problem}"
+        );
+    }
+
+    #[test]
+    fn comparison_finds_a_table_that_is_too_short_or_too_long() {
+        let table = format!("{}\n0.1\n", heading());
+        let mut short = Comparison::new(&table).expect("the heading agrees");
+        short.expect_line("0.1").expect("agrees");
+        assert!(
+            short
+                .expect_line("0.2")
+                .expect_err("it ends")
+                .contains("ends here")
+        );
+        let long = Comparison::new(&table).expect("the heading agrees");
+        assert!(
+            long.expect_end()
+                .expect_err("a line is left")
+                .starts_with("line 2:")
+        );
+    }
+}

@@ -1,0 +1,202 @@
+//! The contact sheet: every delivery's grab, release, first hit and settled pins, for both eyes.
+//!
+//! A line per delivery pair: a frame's first ball at the left, its second at the right; a third one
+//! of the last frame gets a line of its own. Within a tile the left eye's picture is at the left.
+
+use std::io::Cursor;
+use std::path::PathBuf;
+
+use anyhow::{Context, Result};
+use game::Visible;
+use image::{ImageFormat, RgbaImage};
+
+use super::Painter;
+use super::film::{Film, Shot, Throw};
+use super::layout::{eye_size, paper, place};
+use crate::output::OutputFolder;
+
+/// Pixels of one eye's picture: eight tiles beside each other fill a wide screen.
+const EYE_AREA: f32 = 160.0 * 160.0;
+/// Between tiles [pixels].
+const GAP: u32 = 6;
+/// Height of a line of text [pixels].
+const TEXT: u32 = 20;
+/// Deliveries beside each other.
+const ACROSS: u32 = 2;
+
+/// Whose eyes a moment is seen with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Eyes {
+    Own,
+    Spectator,
+}
+
+/// One tile's content.
+struct Moment {
+    name: &'static str,
+    shot: Option<usize>,
+    eyes: Eyes,
+}
+
+/// The moments that matter. Pins are three degrees wide from the foul line, too small for a tile,
+/// so that what happens to them is shown from beside the deck.
+fn moments(throw: &Throw) -> [Moment; 4] {
+    let moment = |name, shot, eyes| Moment { name, shot, eyes };
+    [
+        moment("grab", throw.grab, Eyes::Own),
+        moment("release", throw.release, Eyes::Own),
+        moment("first hit", throw.first_hit, Eyes::Spectator),
+        moment("settled", throw.settled, Eyes::Spectator),
+    ]
+}
+
+/// Draws and writes the sheet of one game; returns its path.
+///
+/// # Errors
+/// When a tile cannot be drawn or the file cannot be written.
+pub fn write(
+    painter: &mut Painter,
+    still: &[Visible],
+    film: &Film,
+    folder: &OutputFolder,
+    progress: &mut dyn FnMut(&str),
+) -> Result<PathBuf> {
+    let eyes = painter.spectator_eyes();
+    let size = eye_size(EYE_AREA, eyes[0].fov.aspect());
+    let lines = lines(&film.throws);
+    let (tile_width, tile_height) = (2 * size.0 + GAP, size.1 + TEXT + GAP);
+    let block_width = 4 * tile_width + 2 * GAP;
+    let line_height = tile_height + TEXT;
+    let count = lines.iter().map(|(line, _)| line + 1).max().unwrap_or(0);
+    let mut sheet = paper(GAP + ACROSS * block_width, 2 * TEXT + count * line_height);
+    let title = format!(
+        "{}: {} pins. Left eye, right eye. Grab and release through the participant's eyes, the rest from beside the pins.",
+        film.button, film.total
+    );
+    place(&mut sheet, &painter.caption(&title)?, GAP, GAP);
+    for (number, (throw, (line, block))) in film.throws.iter().zip(&lines).enumerate() {
+        progress(&format!(
+            "{} contact sheet: delivery {} of {}",
+            film.button,
+            number + 1,
+            film.throws.len()
+        ));
+        let (left, top) = (GAP + block * block_width, 2 * TEXT + line * line_height);
+        place(&mut sheet, &painter.caption(&heading(throw))?, left, top);
+        for (column, moment) in moments(throw).into_iter().enumerate() {
+            let x = left + column as u32 * tile_width;
+            let Some(shot) = moment.shot.and_then(|index| film.shots.get(index)) else {
+                place(
+                    &mut sheet,
+                    &painter.caption(&format!("no {}", moment.name))?,
+                    x,
+                    top + TEXT,
+                );
+                continue;
+            };
+            let tile = tile(painter, still, shot, &moment, size)?;
+            place(&mut sheet, &tile, x, top + TEXT);
+        }
+    }
+    let mut png = Cursor::new(Vec::new());
+    sheet
+        .write_to(&mut png, ImageFormat::Png)
+        .context("cannot encode the contact sheet")?;
+    folder.write(
+        &format!("{}-contact-sheet.png", film.button.file_stem()),
+        png.get_ref(),
+    )
+}
+
+fn tile(
+    painter: &mut Painter,
+    still: &[Visible],
+    shot: &Shot,
+    moment: &Moment,
+    size: (u32, u32),
+) -> Result<RgbaImage> {
+    let eyes = match moment.eyes {
+        Eyes::Own => painter.own_eyes(shot),
+        Eyes::Spectator => painter.spectator_eyes(),
+    };
+    let [left, right] = painter.draw(still, shot, &eyes, size)?;
+    let mut tile = paper(2 * size.0, size.1 + TEXT);
+    place(&mut tile, &left, 0, 0);
+    place(&mut tile, &right, size.0, 0);
+    place(
+        &mut tile,
+        &painter.caption(&format!("{}  {:.2} s", moment.name, shot.time))?,
+        0,
+        size.1,
+    );
+    Ok(tile)
+}
+
+fn heading(throw: &Throw) -> String {
+    let pins = match (throw.foul, throw.fallen) {
+        (true, fallen) => format!("foul ({fallen} fell)"),
+        (false, 1) => "1 pin".to_owned(),
+        (false, fallen) => format!("{fallen} pins"),
+    };
+    format!("Frame {}, ball {}: {pins}", throw.frame, throw.ball)
+}
+
+/// Line and block (0 left, 1 right) of every throw.
+fn lines(throws: &[Throw]) -> Vec<(u32, u32)> {
+    let mut line = 0;
+    let mut places: Vec<(u32, u32)> = Vec::new();
+    for throw in throws {
+        let block = (throw.ball.max(1) - 1) % ACROSS;
+        if block == 0 && !places.is_empty() {
+            line += 1;
+        }
+        places.push((line, block));
+    }
+    places
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn throw(frame: u32, ball: u32) -> Throw {
+        Throw {
+            frame,
+            ball,
+            grab: None,
+            release: None,
+            first_hit: None,
+            settled: None,
+            fallen: 3,
+            foul: false,
+        }
+    }
+
+    #[test]
+    fn lines_start_with_every_first_and_third_ball() {
+        let throws = [
+            throw(1, 1),
+            throw(2, 1),
+            throw(2, 2),
+            throw(3, 1),
+            throw(3, 2),
+            throw(3, 3),
+        ];
+        assert_eq!(
+            lines(&throws),
+            [(0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (3, 0)]
+        );
+    }
+
+    #[test]
+    fn heading_says_what_fell() {
+        assert_eq!(heading(&throw(2, 1)), "Frame 2, ball 1: 3 pins");
+        assert_eq!(
+            heading(&Throw {
+                foul: true,
+                ..throw(2, 1)
+            }),
+            "Frame 2, ball 1: foul (3 fell)"
+        );
+    }
+}

@@ -1,0 +1,233 @@
+//! `bowling play`: sets up a session with the chosen device and runs it to its end.
+
+use std::io::{IsTerminal, Write};
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Instant, SystemTime};
+
+use anyhow::{Context, Result, bail};
+use game::{Button, Conditions, EventKind};
+
+use crate::args::PlayArguments;
+use crate::choose::{self, Choice, Machine};
+use crate::devices::Device;
+use crate::devices::script::{Script, Velocities};
+use crate::output;
+use crate::pictures::{Painter, Wanted};
+use crate::rehearsal;
+use crate::session::{Session, Setup, Summary};
+
+/// Scene when none is asked for.
+const DEFAULT_SCENE: &str = "alley";
+/// Plays as the arguments say, with the data in `root`.
+///
+/// # Errors
+/// One sentence for everything that keeps the session from its end.
+pub fn play(arguments: &PlayArguments, root: &Path) -> Result<()> {
+    let (choice, why) = choose::choose(arguments.device, arguments.offscreen, &Machine::look())?;
+    println!("{why}");
+    let scene = arguments
+        .scene
+        .clone()
+        .unwrap_or_else(|| DEFAULT_SCENE.to_owned());
+    let mut settings = arguments.settings.clone();
+    if let Some(display) = arguments.display {
+        settings.push(format!("display.profile=\"{}\"", display.name()));
+    }
+    let conditions = Conditions::load(&root.join("config"), &scene, &settings)?;
+    let folder = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| output::default_folder(arguments.seed, SystemTime::now()));
+    let setup = Setup {
+        rate_hz: conditions.lobby.tracking.rate_hz,
+        conditions,
+        scene,
+        frames: arguments.frames,
+        seed: arguments.seed,
+        device: if choice == Choice::DeskWindow {
+            "desk"
+        } else {
+            "script"
+        },
+        folder,
+    };
+    let wanted = Wanted {
+        video: !arguments.no_video,
+    };
+    match choice {
+        Choice::ScriptOffscreen => offscreen(setup, root, wanted),
+        Choice::DeskWindow | Choice::ScriptWindow => {
+            bail!("this build opens no window yet: use --offscreen")
+        }
+    }
+}
+
+/// Turned on by Ctrl-C (or a request to terminate): the loop ends in order after its frame.
+///
+/// # Errors
+/// When the system takes no handler.
+pub fn interruption() -> Result<Arc<AtomicBool>> {
+    let flag = Arc::new(AtomicBool::new(false));
+    let raised = Arc::clone(&flag);
+    ctrlc::set_handler(move || raised.store(true, Ordering::Relaxed))
+        .context("cannot listen for Ctrl-C")?;
+    Ok(flag)
+}
+
+/// The scripted participant plays both games without a screen, as fast as the machine can.
+fn offscreen(setup: Setup, root: &Path, wanted: Wanted) -> Result<()> {
+    // Before anything is written: a missing driver or asset must not cost a game.
+    let mut painter = Painter::new(root, &setup.conditions.lobby)?;
+    let mut script = Script::new(
+        &setup.conditions.lobby,
+        setup.seed,
+        Velocities::Measured,
+        &Button::BOTH,
+    );
+    let frames = setup.frames;
+    let stop = interruption()?;
+    let started = Instant::now();
+    let mut session = Session::start(setup)?;
+    let mut progress = Progress::new();
+    let run = simulate(&mut session, &mut script, frames, &stop, &mut progress);
+    let simulated_in = started.elapsed().as_secs_f64();
+    if let Err(error) = run {
+        progress.end();
+        // The journal is what tells what went wrong: close it in order before reporting.
+        session.finish(None, wanted, &mut |_| ())?;
+        return Err(error);
+    }
+    let is_interrupted = stop.load(Ordering::Relaxed);
+    let painter = (!is_interrupted).then_some(&mut painter);
+    let summary = session.finish(painter, wanted, &mut |text| progress.say(text))?;
+    progress.end();
+    if is_interrupted {
+        println!("Interrupted: the recording is in order up to here, without pictures.");
+    }
+    report(&summary);
+    println!(
+        "{:.0} simulated seconds in {simulated_in:.1} s, pictures in {:.1} s.",
+        summary.simulated_s,
+        started.elapsed().as_secs_f64() - simulated_in
+    );
+    Ok(())
+}
+
+fn simulate(
+    session: &mut Session,
+    script: &mut Script,
+    frames: u32,
+    stop: &AtomicBool,
+    progress: &mut Progress,
+) -> Result<()> {
+    let longest = rehearsal::patience(frames, Button::BOTH.len());
+    while !script.is_done() && !stop.load(Ordering::Relaxed) {
+        let input = script.next(session.game());
+        session.frame(input)?;
+        for event in session.game().events() {
+            if let Some(text) = progress_text(&event.kind, frames) {
+                progress.say(&text);
+            }
+        }
+        if session.game().time() > longest {
+            bail!(
+                "the scripted participant got stuck after {longest:.0} simulated seconds: with these settings it cannot finish a game (journal in {})",
+                session.folder().display()
+            );
+        }
+    }
+    Ok(())
+}
+
+fn progress_text(event: &EventKind, frames: u32) -> Option<String> {
+    match event {
+        EventKind::GameStarted { button } => Some(format!("{button}: frame 1 of {frames}")),
+        EventKind::FrameScored {
+            button,
+            frame,
+            total,
+            ..
+        } if *frame < frames => Some(format!(
+            "{button}: frame {} of {frames}, {total} so far",
+            frame + 1
+        )),
+        EventKind::GameOver { button, total } => Some(format!("{button}: over, {total} pins")),
+        _ => None,
+    }
+}
+
+/// Prints what a session left: score sheets, files, hash, refusals.
+pub fn report(summary: &Summary) {
+    for sheet in &summary.sheets {
+        println!("\n{sheet}");
+    }
+    println!("Files:");
+    for file in &summary.files {
+        println!("  {}", file.display());
+    }
+    if !summary.refused.is_none() {
+        println!(
+            "Readings of the device that were no numbers and were refused: {}.",
+            summary.refused
+        );
+    }
+    println!("State hash {}", summary.hash);
+    if let Some(folder) = summary.files.first().and_then(|file| file.parent()) {
+        println!("Check it with: bowling replay {}", shell_word(folder));
+    }
+}
+
+fn shell_word(path: &Path) -> String {
+    let text = path.display().to_string();
+    if text.contains(char::is_whitespace) {
+        format!("'{text}'")
+    } else {
+        text
+    }
+}
+
+/// One line that is written over on a terminal, and plain lines elsewhere.
+#[derive(Debug)]
+pub struct Progress {
+    is_terminal: bool,
+    written: usize,
+}
+
+impl Progress {
+    /// Progress on the standard error stream, so that the standard output holds the results alone.
+    pub fn new() -> Self {
+        Progress {
+            is_terminal: std::io::stderr().is_terminal(),
+            written: 0,
+        }
+    }
+
+    /// Shows `text`.
+    pub fn say(&mut self, text: &str) {
+        let mut stream = std::io::stderr().lock();
+        // A closed stream is no reason to end a session.
+        let _ = if self.is_terminal {
+            let result = write!(stream, "\r{text:<width$}", width = self.written);
+            self.written = text.len();
+            stream.flush().and(result)
+        } else {
+            writeln!(stream, "{text}")
+        };
+    }
+
+    /// Leaves the line.
+    pub fn end(&mut self) {
+        if self.is_terminal && self.written > 0 {
+            eprintln!();
+            self.written = 0;
+        }
+    }
+}
+
+impl Default for Progress {
+    fn default() -> Self {
+        Self::new()
+    }
+}

@@ -1,0 +1,130 @@
+//! `bowling replay`: plays a recording again from its inputs and checks that the same came out.
+
+use std::fs;
+use std::path::Path;
+
+use anyhow::{Context, Result, anyhow, bail};
+use game::{Button, EventKind, Game};
+
+use crate::journal::{self, Recording};
+use crate::motion::{self, Comparison};
+use crate::output::{JOURNAL, MOTION};
+use crate::session::sheet_text;
+
+/// Replays the recording in `folder`, prints the score sheets and the hash.
+///
+/// # Errors
+/// When the recording is damaged, or the hash, a score or the motion table differs.
+pub fn replay(folder: &Path) -> Result<()> {
+    let recording = journal::read(&folder.join(JOURNAL))?;
+    let motion_path = folder.join(MOTION);
+    let table = fs::read_to_string(&motion_path).with_context(|| {
+        format!(
+            "cannot read {}: it belongs to the recording",
+            motion_path.display()
+        )
+    })?;
+    let in_table = |problem: String| anyhow!("{} {problem}", motion_path.display());
+    let mut comparison = Comparison::new(&table).map_err(in_table)?;
+    let conditions = recording.header.conditions.clone();
+    let mut game = Game::new(conditions, recording.header.frames)
+        .context("cannot set up the recorded alley")?;
+    let mut started = Vec::new();
+    let mut table_problem = None;
+    for input in &recording.inputs {
+        game.step(input);
+        for event in game.events() {
+            if let EventKind::GameStarted { button } = event.kind {
+                started.push(button);
+            }
+        }
+        if table_problem.is_none() {
+            table_problem = comparison.expect_line(&motion::row(&game, input)).err();
+        }
+    }
+    check_result(&game, &started, &recording, folder)?;
+    // Only now: when the simulation itself went another way, that is the finding, not the table.
+    if let Some(problem) = table_problem {
+        return Err(in_table(problem));
+    }
+    comparison.expect_end().map_err(in_table)?;
+    print_result(&game, &started, &recording);
+    Ok(())
+}
+
+fn check_result(
+    game: &Game,
+    started: &[Button],
+    recording: &Recording,
+    folder: &Path,
+) -> Result<()> {
+    let (end, count) = (&recording.end, recording.inputs.len());
+    if end.inputs != count as u64 {
+        bail!(
+            "{}: the end says {} inputs, but there are {count}",
+            folder.join(JOURNAL).display(),
+            end.inputs
+        );
+    }
+    for (button, recorded) in [(Button::Red, end.red), (Button::Blue, end.blue)] {
+        let replayed = started
+            .contains(&button)
+            .then(|| game.score_sheet(button).total());
+        if replayed != recorded {
+            bail!(
+                "{}: the replay gives {} under {button}, the recording says {}: {}",
+                folder.display(),
+                score_text(replayed),
+                score_text(recorded),
+                origin(recording)
+            );
+        }
+    }
+    let hash = journal::hash_text(game.hash());
+    if hash != end.hash {
+        bail!(
+            "{}: the replay ends with state hash {hash}, the recording with {}: {}",
+            folder.display(),
+            end.hash,
+            origin(recording)
+        );
+    }
+    Ok(())
+}
+
+fn score_text(score: Option<u32>) -> String {
+    score.map_or("no game".to_owned(), |score| format!("{score} pins"))
+}
+
+/// Where a difference may come from.
+fn origin(recording: &Recording) -> String {
+    let header = &recording.header;
+    format!(
+        "it was made by version {} at commit {}, this is {} at {}",
+        header.program,
+        header.commit,
+        env!("CARGO_PKG_VERSION"),
+        env!("BOWLING_COMMIT")
+    )
+}
+
+fn print_result(game: &Game, started: &[Button], recording: &Recording) {
+    for button in Button::BOTH
+        .into_iter()
+        .filter(|button| started.contains(button))
+    {
+        println!("{}\n", sheet_text(game, button));
+    }
+    let refused = recording.end.refused;
+    if !refused.is_none() {
+        println!("Readings of the device that were refused when it was recorded: {refused}.");
+    }
+    if !recording.end.complete {
+        println!("The session was ended before both games were over.");
+    }
+    println!(
+        "{} frames replayed: scores, motion table and state agree.",
+        recording.inputs.len()
+    );
+    println!("State hash {}", recording.end.hash);
+}
