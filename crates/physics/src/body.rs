@@ -82,6 +82,10 @@ pub struct Body {
     pub(crate) turning: DVec3,
     /// Acceleration for the rest of the step [m/s2]: gravity in flight, zero while something carries the body.
     pub(crate) acceleration: DVec3,
+    /// Rates of velocity [m/s2] and momentum [N m] while something carries the body; see `linear_now`.
+    pub(crate) bend: (DVec3, DVec3),
+    /// Middle of the stretch of time to which velocity and momentum of a carried body belong [s].
+    pub(crate) middle: f64,
     /// Time inside the current step up to which the state has been brought [s].
     pub(crate) clock: f64,
     /// Pose at the end of the step if nothing more happens.
@@ -114,6 +118,8 @@ impl Body {
             momentum: DVec3::ZERO,
             turning: DVec3::ZERO,
             acceleration: DVec3::ZERO,
+            bend: (DVec3::ZERO, DVec3::ZERO),
+            middle: 0.0,
             clock: 0.0,
             end: def.pose,
             path: 0.0,
@@ -140,7 +146,7 @@ impl Body {
     pub fn angular_velocity(&self) -> DVec3 {
         match self.motion {
             Motion::Dynamic => {
-                let local = self.rotation.conjugate() * self.momentum;
+                let local = self.rotation.conjugate() * self.momentum_now();
                 self.rotation * (local / self.mass.inertia)
             }
             Motion::Driven => self.turning,
@@ -150,7 +156,7 @@ impl Body {
 
     /// Velocity [m/s] of the body's material at a point [m], world frame.
     pub fn velocity_at(&self, point: DVec3) -> DVec3 {
-        self.linear + self.angular_velocity().cross(point - self.position)
+        self.linear_now() + self.angular_velocity().cross(point - self.position)
     }
 
     /// Kinetic energy [J]; zero unless the body is dynamic.
@@ -202,6 +208,24 @@ impl Body {
         self.frozen
     }
 
+    /// Velocity at the body's clock [m/s].
+    ///
+    /// A carried body moves at a constant velocity, that of the middle of the stretch; at any other time the rate at
+    /// which its contacts and gravity bend its way is to be added. At the end of a step there is nothing to add.
+    pub(crate) fn linear_now(&self) -> DVec3 {
+        self.linear + self.bend.0 * (self.clock - self.middle)
+    }
+
+    pub(crate) fn momentum_now(&self) -> DVec3 {
+        self.momentum + self.bend.1 * (self.clock - self.middle)
+    }
+
+    /// Makes velocity and momentum those of the body's clock.
+    pub(crate) fn straighten(&mut self) {
+        (self.linear, self.momentum) = (self.linear_now(), self.momentum_now());
+        self.bend = (DVec3::ZERO, DVec3::ZERO);
+    }
+
     /// Whether impulses move it.
     pub(crate) fn is_dynamic(&self) -> bool {
         self.motion == Motion::Dynamic && !self.frozen
@@ -218,7 +242,7 @@ impl Body {
     }
 
     pub(crate) fn set_velocity(&mut self, linear: DVec3, angular: DVec3) {
-        (self.linear, self.turning, self.momentum) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
+        self.halt();
         match self.motion {
             Motion::Dynamic => {
                 let local = self.rotation.conjugate() * angular;
@@ -390,6 +414,7 @@ impl Body {
         self.momentum = DVec3::ZERO;
         self.turning = DVec3::ZERO;
         self.acceleration = DVec3::ZERO;
+        self.bend = (DVec3::ZERO, DVec3::ZERO);
     }
 }
 

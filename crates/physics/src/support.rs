@@ -121,6 +121,27 @@ impl Shape {
         }
     }
 
+    /// Sense along y of the axis of a flat round piece, where all of its points are equally far.
+    pub(crate) fn pole(&self, piece: u8) -> Option<f64> {
+        match (self.kind, piece) {
+            (Kind::Frustum { bottom, .. }, 0) if bottom > 0.0 => Some(-1.0),
+            (Kind::Frustum { top, .. }, 1) if top > 0.0 => Some(1.0),
+            (Kind::TruncatedEllipsoid { .. }, 1) => Some(-1.0),
+            _ => None,
+        }
+    }
+
+    /// The piece that the search should follow from `piece` at the normal `n`.
+    ///
+    /// The two pieces of a truncated ellipsoid are not rivals of which the farther counts: they join smoothly, and
+    /// only the one in charge at n may be used there. All others keep their piece.
+    pub(crate) fn piece_in_charge(&self, piece: u8, n: DVec3) -> u8 {
+        match self.kind {
+            Kind::TruncatedEllipsoid { .. } => self.tip(n).piece,
+            _ => piece,
+        }
+    }
+
     /// Support point along the unit normal `n` with its piece.
     ///
     /// The piece is decided once and the point computed from that very decision: two comparisons that round

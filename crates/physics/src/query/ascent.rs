@@ -9,10 +9,12 @@
 
 use glam::{DVec2, DVec3};
 
-use super::{Limits, Placed, Separation};
+use super::{Limits, Placed, Separation, flats, gap_along};
 
 /// Longest step on the tangent plane [rad, about].
 const LONGEST: f64 = 1.0;
+/// A step this short changes nothing any more [rad].
+const SHORTEST: f64 = 1e-12;
 /// Pairs of pieces kept at a time; three are enough for the optimum, a fourth is the newcomer.
 const KEPT: usize = 4;
 
@@ -58,8 +60,12 @@ fn natural(a: &Placed, b: &Placed, n: DVec3) -> ((u8, u8), f64) {
 
 fn model(a: &Placed, b: &Placed, pieces: (u8, u8), tangent: &Tangent, weight: f64) -> Model {
     let Tangent { n, u, w } = *tangent;
-    let (piece_a, piece_b) = (a.shape.piece(pieces.0), b.shape.piece(pieces.1));
     let (local_a, local_b) = (a.local(n), b.local(-n));
+    let pieces = (
+        a.shape.piece_in_charge(pieces.0, local_a),
+        b.shape.piece_in_charge(pieces.1, local_b),
+    );
+    let (piece_a, piece_b) = (a.shape.piece(pieces.0), b.shape.piece(pieces.1));
     let point_a = a.position + a.rotation * piece_a.point(local_a);
     let point_b = b.position + b.rotation * piece_b.point(local_b);
     let d = point_b - point_a;
@@ -91,51 +97,156 @@ fn model(a: &Placed, b: &Placed, pieces: (u8, u8), tangent: &Tangent, weight: f6
 
 /// Climbs from `start` to the nearest maximum of s.
 pub(super) fn ascend(a: &Placed, b: &Placed, start: DVec3, limits: Limits) -> Separation {
-    let scale = a.shape.size() + b.shape.size();
-    let mut tangent = Tangent::at(start);
-    let (pieces, mut s) = natural(a, b, start);
-    let mut kept = Bundle::new(model(a, b, pieces, &tangent, 1.0));
-    let mut iterations = 0;
-    let mut radius = LONGEST;
+    let mut climb = Climb::new(a, b, start, limits);
     loop {
-        if s > limits.enough {
-            return kept.answer(tangent.n, s, iterations, false);
+        if let Some(answer) = climb.step() {
+            return answer;
         }
-        let (mut t, gain) = kept.solve(s, scale);
-        let finished = gain <= limits.tolerance;
-        if iterations >= limits.iteration_cap {
-            return kept.answer(tangent.n, s, iterations, !finished);
+    }
+}
+
+/// A search under way.
+struct Climb<'a> {
+    a: &'a Placed<'a>,
+    b: &'a Placed<'a>,
+    limits: Limits,
+    scale: f64,
+    tangent: Tangent,
+    s: f64,
+    kept: Bundle,
+    iterations: u32,
+    /// Longest step trusted at present.
+    radius: f64,
+    /// How often a pole was left.
+    left: u32,
+}
+
+impl<'a> Climb<'a> {
+    fn new(a: &'a Placed<'a>, b: &'a Placed<'a>, start: DVec3, limits: Limits) -> Climb<'a> {
+        let tangent = Tangent::at(start);
+        let (pieces, s) = natural(a, b, start);
+        let kept = Bundle::new(model(a, b, pieces, &tangent, 1.0));
+        let scale = a.shape.size() + b.shape.size();
+        Climb {
+            a,
+            b,
+            limits,
+            scale,
+            tangent,
+            s,
+            kept,
+            iterations: 0,
+            radius: LONGEST,
+            left: 0,
         }
-        if finished && t.length() < 1e-12 {
-            return kept.answer(tangent.n, s, iterations, false);
+    }
+
+    fn answer(&self, capped: bool) -> Option<Separation> {
+        Some(
+            self.kept
+                .answer(self.tangent.n, self.s, self.iterations, capped),
+        )
+    }
+
+    /// One new normal; the answer when the search is over.
+    fn step(&mut self) -> Option<Separation> {
+        if self.s > self.limits.enough {
+            return self.answer(false);
         }
-        let length = t.length();
-        if length > radius {
-            t *= radius / length;
+        let (mut t, gain) = self.kept.solve(self.s, self.scale);
+        let finished = gain <= self.limits.tolerance;
+        if self.iterations >= self.limits.iteration_cap {
+            return self.answer(!finished);
         }
-        iterations += 1;
-        let n = tangent.step(t);
-        let (pieces, trial) = natural(a, b, n);
-        let newcomer = !kept.has(pieces);
-        if trial >= s {
-            tangent = Tangent::at(n);
-            s = trial;
-            kept.remodel(a, b, &tangent);
+        if finished && t.length() < SHORTEST {
+            return self.answer(false);
+        }
+        if let Some(over) = self.cross_pole(t) {
+            return over;
+        }
+        t = t.clamp_length_max(self.radius);
+        self.iterations += 1;
+        let n = self.tangent.step(t);
+        let (pieces, trial) = natural(self.a, self.b, n);
+        let newcomer = !self.kept.follows(self.a, self.b, n, pieces);
+        if trial >= self.s {
+            self.move_to(n, trial);
             if newcomer {
-                kept.add(model(a, b, pieces, &tangent, 0.0));
+                self.kept
+                    .add(model(self.a, self.b, pieces, &self.tangent, 0.0));
             }
-            radius = (radius * 2.0).min(LONGEST);
-            if finished {
-                return kept.answer(n, s, iterations, false);
-            }
-        } else if newcomer {
-            // A kink was in the way: the same step again, knowing the other side.
-            kept.add(model(a, b, pieces, &tangent, 0.0));
-        } else if finished || t.length() < 1e-12 {
-            return kept.answer(tangent.n, s, iterations, false);
-        } else {
-            radius = 0.3 * t.length();
+            self.radius = (self.radius * 2.0).min(LONGEST);
+            return if finished { self.answer(false) } else { None };
         }
+        if newcomer {
+            // A kink was in the way: the same step again, knowing the other side.
+            self.kept
+                .add(model(self.a, self.b, pieces, &self.tangent, 0.0));
+            return None;
+        }
+        if finished || t.length() < SHORTEST {
+            return self.answer(false);
+        }
+        self.radius = 0.3 * t.length();
+        None
+    }
+
+    fn move_to(&mut self, n: DVec3, s: f64) {
+        self.tangent = Tangent::at(n);
+        self.s = s;
+        self.kept.remodel(self.a, self.b, &self.tangent);
+    }
+
+    /// A disc's axis is a point where s has no derivative and second-order steps crawl; a step that passes it by
+    /// looks there first.
+    ///
+    /// Either the closest points line up at the pole, which then is the answer, or the search leaves it along the
+    /// offset that remains. `None`: no pole in the way, or a worse one.
+    fn cross_pole(&mut self, t: DVec2) -> Option<Option<Separation>> {
+        let tangent = self.tangent;
+        let step = tangent.u * t.x + tangent.w * t.y;
+        let pole = self
+            .kept
+            .poles(self.a, self.b)
+            .into_iter()
+            .flatten()
+            .find(|pole| {
+                let height = tangent.n.dot(*pole);
+                height > 0.0 && step.dot(*pole) * height >= 0.5 * (1.0 - height * height)
+            })?;
+        if self.left >= 4 {
+            return None;
+        }
+        let s = gap_along(self.a, self.b, pole);
+        if s < self.s {
+            return None;
+        }
+        self.left += 1;
+        self.iterations += 1;
+        let offset = match flats::line_up(self.a, self.b, pole, s) {
+            Ok(answer) => {
+                return Some(Some(Separation {
+                    iterations: self.iterations,
+                    ..answer
+                }));
+            }
+            Err(offset) => offset,
+        };
+        let mut angle = (offset.length() / (0.1 * self.scale + s.abs())).min(LONGEST);
+        let direction = offset.try_normalize()?;
+        for _ in 0..30 {
+            let n = (pole + direction * angle).try_normalize()?;
+            let (pieces, trial) = natural(self.a, self.b, n);
+            if trial > s {
+                self.s = trial;
+                self.tangent = Tangent::at(n);
+                self.kept = Bundle::new(model(self.a, self.b, pieces, &self.tangent, 1.0));
+                self.radius = LONGEST;
+                return Some(None);
+            }
+            angle *= 0.3;
+        }
+        None
     }
 }
 
@@ -153,8 +264,23 @@ impl Bundle {
         }
     }
 
-    fn has(&self, pieces: (u8, u8)) -> bool {
-        self.models[..self.count].iter().any(|m| m.pieces == pieces)
+    /// Whether one of the models is that of `pieces` at the normal `n`.
+    fn follows(&self, a: &Placed, b: &Placed, n: DVec3, pieces: (u8, u8)) -> bool {
+        let (local_a, local_b) = (a.local(n), b.local(-n));
+        self.models[..self.count].iter().any(|m| {
+            a.shape.piece_in_charge(m.pieces.0, local_a) == pieces.0
+                && b.shape.piece_in_charge(m.pieces.1, local_b) == pieces.1
+        })
+    }
+
+    /// Axes of the discs in play, as normals from a to b.
+    fn poles(&self, a: &Placed, b: &Placed) -> [Option<DVec3>; 2] {
+        let mut poles = [None, None];
+        for m in self.models[..self.count].iter().filter(|m| m.weight > 0.0) {
+            poles[0] = poles[0].or(a.shape.pole(m.pieces.0).map(|y| a.rotation.y_axis * y));
+            poles[1] = poles[1].or(b.shape.pole(m.pieces.1).map(|y| b.rotation.y_axis * -y));
+        }
+        poles
     }
 
     /// Adds a model in place of the least wanted: no weight, and farthest from being the smallest.

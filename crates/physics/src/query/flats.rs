@@ -23,33 +23,36 @@ pub(super) fn normals(shape: &Placed) -> impl Iterator<Item = DVec3> {
     list.into_iter().take(count)
 }
 
-/// The answer at `n` if the closest points line up there, with gap `s`.
+/// The answer at `n`, with gap `s`, if the closest points line up there; else the offset across n that remains.
 ///
 /// The points of a and of b that are farthest along n form two convex sets (points, lines or faces). They line up if
 /// the sets, seen along n, share a point. Projecting in turn on either finds one if there is one.
-pub(super) fn lined_up(a: &Placed, b: &Placed, n: DVec3, s: f64) -> Option<Separation> {
+pub(super) fn line_up(a: &Placed, b: &Placed, n: DVec3, s: f64) -> Result<Separation, DVec3> {
     let mut point_a = a.face_point(n, b.position, SLACK);
     let mut point_b = b.face_point(-n, point_a, SLACK);
-    let mut offset = f64::INFINITY;
+    let mut last = f64::INFINITY;
     for _ in 0..12 {
         let d = point_b - point_a;
-        let next = (d - n * n.dot(d)).length();
-        if next <= LINED_UP {
-            return Some(Separation {
-                gap: s,
+        let offset = d - n * n.dot(d);
+        let length = offset.length();
+        if length <= LINED_UP {
+            let (gap, iterations, capped) = (s, 0, false);
+            return Ok(Separation {
+                gap,
                 normal: n,
                 point_a,
                 point_b,
-                iterations: 0,
-                capped: false,
+                iterations,
+                capped,
             });
         }
-        if next > 0.999 * offset {
-            return None;
+        if length > 0.999 * last {
+            return Err(offset);
         }
-        offset = next;
+        last = length;
         point_a = a.face_point(n, point_b, SLACK);
         point_b = b.face_point(-n, point_a, SLACK);
     }
-    None
+    let d = point_b - point_a;
+    Err(d - n * n.dot(d))
 }

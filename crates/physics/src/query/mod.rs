@@ -165,7 +165,7 @@ pub(crate) fn separation_placed(
     for n in flats::normals(a).chain(flats::normals(b).map(|n| -n)) {
         let s = gap_along(a, b, n);
         if s > best.gap - 1e-3 * best.gap.abs() - 1e-12
-            && let Some(answer) = flats::lined_up(a, b, n, s)
+            && let Ok(answer) = flats::line_up(a, b, n, s)
             && answer.gap >= best.gap - 1e-15
         {
             best = Separation {

@@ -14,6 +14,8 @@ use crate::world::{Impact, World};
 const EVENTS: usize = 2000;
 /// Most impulses in answer to one event.
 const ROUNDS: usize = 60;
+/// Slower approach than this is left to the lasting contact [m/s].
+const APPROACH: f64 = 1e-6;
 /// Rounds after which restitution is dropped, so that a body between two others comes to terms with them.
 const ELASTIC_ROUNDS: usize = 40;
 
@@ -51,6 +53,7 @@ impl World {
     fn answer(&mut self, event: Event, dt: f64) -> Vec<usize> {
         let t = event.time;
         let mut bodies = Vec::new();
+        let mut struck = Vec::new();
         let mut touches: Vec<Touch> = Vec::new();
         self.involve(event.key, t, dt, &mut bodies, &mut touches);
         for round in 0..ROUNDS {
@@ -60,12 +63,24 @@ impl World {
             let touch = touches[worst];
             self.strike(&touch, round < ELASTIC_ROUNDS);
             for slot in [touch.a, touch.b] {
+                if !struck.contains(&slot) && self.bodies[slot].is_dynamic() {
+                    struck.push(slot);
+                    self.spread(slot, t, dt, &mut bodies, &mut touches);
+                }
+            }
+        }
+        if struck.is_empty() {
+            // Nothing approaches: the contact only begins. Its bodies still change from flight to support.
+            struck.extend([event.key.a as usize, event.key.b as usize]);
+            struck.retain(|slot| self.bodies[*slot].is_active());
+            for slot in struck.clone() {
                 self.spread(slot, t, dt, &mut bodies, &mut touches);
             }
         }
         self.settle_touches(&touches);
+        self.set_off(&struck, &touches, t, dt);
         for slot in &bodies {
-            self.set_off(*slot, dt);
+            self.bodies[*slot].look_ahead(dt);
         }
         bodies
     }
@@ -122,7 +137,7 @@ impl World {
                 touch.set_point(pressure_point(touch, &base, &self.bodies), &self.bodies);
             }
             let speed = touch.normal.dot(touch.slip(&self.bodies));
-            if speed > 1e-9 && worst.is_none_or(|w| speed > w.1) {
+            if speed > APPROACH && worst.is_none_or(|w| speed > w.1) {
                 worst = Some((i, speed));
             }
             if first {
@@ -172,20 +187,33 @@ impl World {
         }
     }
 
-    /// Chooses flight or support for the rest of the step.
-    fn set_off(&mut self, slot: usize, dt: f64) {
-        let carried = self
-            .pairs
-            .touching
-            .iter()
-            .any(|k| k.a as usize == slot || k.b as usize == slot);
+    /// Chooses flight or support of the struck bodies for the rest of the step.
+    fn set_off(&mut self, struck: &[usize], touches: &[Touch], t: f64, dt: f64) {
         let gravity = self.settings.gravity;
-        let body = &mut self.bodies[slot];
-        if body.is_active() {
+        let mut carried = Vec::new();
+        for slot in struck {
+            let on = |k: &Key| k.a as usize == *slot || k.b as usize == *slot;
+            let is_carried = self.pairs.touching.iter().any(on);
+            let body = &mut self.bodies[*slot];
+            if !body.is_active() {
+                continue;
+            }
             body.still_steps = 0;
-            body.acceleration = if carried { DVec3::ZERO } else { gravity };
-            body.look_ahead(dt);
+            body.straighten();
+            body.acceleration = if is_carried { DVec3::ZERO } else { gravity };
+            if is_carried {
+                carried.push(*slot);
+            }
         }
+        let span = dt - t;
+        if carried.is_empty() || span < 1e-9 {
+            return;
+        }
+        let lasting = touches
+            .iter()
+            .filter(|touch| self.pairs.part(touch.key).touching);
+        let mut rows: Vec<_> = lasting.map(|touch| self.row(*touch, span)).collect();
+        self.carry(&mut rows, &carried, span);
     }
 }
 
@@ -214,7 +242,9 @@ fn pressure_point(touch: &Touch, base: &Base, bodies: &[Body]) -> DVec3 {
     if rate < 1e-14 {
         return base.clamp(base.centre);
     }
-    let closing = -base.up.dot(body.linear - other.velocity_at(base.centre));
+    let closing = -base
+        .up
+        .dot(body.linear_now() - other.velocity_at(base.centre));
     let inertia = body.mass.inertia.x;
     let lever = if closing > 0.0 {
         (inertia * rate / (body.mass.mass * closing)).min(base.radius)

@@ -32,6 +32,7 @@ impl World {
         self.run_events(dt);
         for body in &mut self.bodies {
             body.advance(dt, dt);
+            body.straighten();
         }
         self.freeze_broken();
         if self.settings.sleeping {

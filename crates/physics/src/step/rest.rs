@@ -1,7 +1,11 @@
 //! Lasting contacts: what lies, stands, leans or rolls keeps from sinking, with the friction of one step.
 //!
-//! A body that something carries gets gravity's kick at the start of the step and then moves at constant velocity.
-//! Each contact takes the e = 0 blend of Eq. (9) once, with the friction rate of this step's length; then the
+//! A carried body moves through a stretch of time (a step, or what an impact leaves of it) at one velocity, that of
+//! the stretch's middle. Half of gravity's kick and an answer of the contacts lead there from the start, another
+//! half and another answer lead on to the end; so a body that passes between flight and contact takes the velocity of
+//! that very moment along, and energy is kept to second order.
+//!
+//! In an answer each contact takes the e = 0 blend of Eq. (9) once, with the friction rate of that half; then the
 //! normal impulses alone are iterated until no contact approaches. Iterating the blend itself never settles when
 //! a body has two contacts. A flat base on a flat face is one contact in closed form.
 
@@ -19,11 +23,13 @@ const SLOP: f64 = 5e-6;
 /// Gap that is not worth closing [m]; a standing pin then has no velocity at all.
 const EXACT: f64 = 1e-9;
 
-struct Row {
+/// A lasting contact while it is being answered.
+pub(crate) struct Row {
     touch: Touch,
     k: DMat3,
-    /// Approach that is allowed: a gap may close in the step, an overlap must open.
+    /// Approach that is allowed: a gap may close in the stretch, an overlap must open.
     allowed: f64,
+    /// Friction rate of half a stretch.
     rate: f64,
     /// Normal impulse so far [N s].
     pressed: f64,
@@ -36,23 +42,61 @@ impl World {
     pub(crate) fn rest(&mut self, dt: f64) {
         let mut rows = self.gather(dt);
         let gravity = self.settings.gravity;
-        for body in &mut self.bodies {
-            if !body.is_active() {
-                continue;
-            }
-            if body.contacts > 0 {
-                body.linear += gravity * dt;
-            } else {
+        let mut carried = Vec::new();
+        for (slot, body) in self.bodies.iter_mut().enumerate() {
+            if body.is_active() && body.contacts > 0 {
+                carried.push(slot);
+            } else if body.is_active() {
                 body.acceleration = gravity;
             }
         }
+        self.carry(&mut rows, &carried, dt);
+        for body in &mut self.bodies {
+            body.look_ahead(dt);
+        }
+    }
+
+    /// Takes the bodies `slots` through a stretch of `span` seconds that begins at their clocks.
+    pub(crate) fn carry(&mut self, rows: &mut [Row], slots: &[usize], span: f64) {
+        let half = 0.5 * span;
+        let kick = self.settings.gravity * half;
+        for slot in slots {
+            self.bodies[*slot].linear += kick;
+        }
+        self.answer_rows(rows, half);
+        let mut middle = Vec::with_capacity(slots.len());
+        for slot in slots {
+            let body = &mut self.bodies[*slot];
+            middle.push((body.linear, body.momentum));
+            body.linear += kick;
+        }
+        for row in rows.iter_mut() {
+            // What closes a gap or opens an overlap on the way must not be left over at the end.
+            row.allowed = 0.0;
+            row.pressed = 0.0;
+            row.given = (DVec3::ZERO, DVec3::ZERO);
+        }
+        self.answer_rows(rows, half);
+        for (slot, (linear, momentum)) in slots.iter().zip(middle) {
+            let body = &mut self.bodies[*slot];
+            body.bend = (
+                (body.linear - linear) / half,
+                (body.momentum - momentum) / half,
+            );
+            (body.linear, body.momentum) = (linear, momentum);
+            body.middle = body.clock + half;
+        }
+    }
+
+    /// Stops every approach at the rows' contacts, with their friction.
+    fn answer_rows(&mut self, rows: &mut [Row], half: f64) {
         for row in rows.iter_mut().filter(|r| r.touch.base.is_none()) {
             self.rub(row);
         }
-        let enough = 1e-4 * gravity.length() * dt + 1e-15;
+        let enough = 1e-4 * self.settings.gravity.length() * half + 1e-15;
         for _ in 0..PASSES {
             let mut worst: f64 = 0.0;
-            for row in &mut rows {
+            for row in rows.iter_mut() {
                 worst = worst.max(match row.touch.base {
                     Some(base) => self.stand(row, &base),
                     None => self.press(row),
@@ -61,9 +105,6 @@ impl World {
             if worst <= enough {
                 break;
             }
-        }
-        for body in &mut self.bodies {
-            body.look_ahead(dt);
         }
     }
 
@@ -85,20 +126,23 @@ impl World {
             }
             self.bodies[a].contacts += 1;
             self.bodies[b].contacts += 1;
-            let rate = coefficients(&self.bodies[a], &self.bodies[b]).friction_rate;
-            let rate = friction_rate_per_step(rate, dt, self.settings.friction_reference_s);
-            let allowed = self.allowed_approach(&touch, dt);
-            let k = touch.compliance(&self.bodies);
-            rows.push(Row {
-                touch,
-                k,
-                allowed,
-                rate,
-                pressed: 0.0,
-                given: (DVec3::ZERO, DVec3::ZERO),
-            });
+            rows.push(self.row(touch, dt));
         }
         rows
+    }
+
+    /// A contact made ready for a stretch of `span` seconds.
+    pub(crate) fn row(&self, touch: Touch, span: f64) -> Row {
+        let rate = coefficients(&self.bodies[touch.a], &self.bodies[touch.b]).friction_rate;
+        let reference = self.settings.friction_reference_s;
+        Row {
+            k: touch.compliance(&self.bodies),
+            allowed: self.allowed_approach(&touch, span),
+            rate: friction_rate_per_step(rate, 0.5 * span, reference),
+            pressed: 0.0,
+            given: (DVec3::ZERO, DVec3::ZERO),
+            touch,
+        }
     }
 
     /// Largest approach speed that a contact may keep [m/s]; negative when it is to be pushed apart.

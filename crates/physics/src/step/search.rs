@@ -292,12 +292,14 @@ fn part_gap(a: &Placed, part_a: &Part, b: &Placed, part_b: &Part) -> f64 {
 fn closing(a: &Body, b: &Body, t: f64, point: DVec3, normal: DVec3) -> bool {
     let velocity = |body: &Body| {
         let pose = body.pose_at(t);
-        let linear = body.linear + body.acceleration * (t - body.clock);
+        let linear =
+            body.linear + body.acceleration * (t - body.clock) + body.bend.0 * (t - body.middle);
         linear + body.angular_velocity().cross(point - pose.position)
     };
     let speed = normal.dot(velocity(a) - velocity(b));
     speed > APPROACH
-        || (speed > -1e3 * APPROACH && normal.dot(a.acceleration - b.acceleration) > 0.0)
+        || (speed > -1e3 * APPROACH
+            && normal.dot(a.acceleration + a.bend.0 - b.acceleration - b.bend.0) > 0.0)
 }
 
 /// Latest time found before the gap `at` falls to zero between `low` (apart) and `high` (not), by regula falsi.

@@ -116,8 +116,8 @@ impl Touch {
     /// Velocity of a's contact point relative to b's, Eq. (8) [m/s].
     pub fn slip(&self, bodies: &[Body]) -> DVec3 {
         let (a, b) = (&bodies[self.a], &bodies[self.b]);
-        a.linear + a.angular_velocity().cross(self.arm_a)
-            - b.linear
+        a.linear_now() + a.angular_velocity().cross(self.arm_a)
+            - b.linear_now()
             - b.angular_velocity().cross(self.arm_b)
     }
 
