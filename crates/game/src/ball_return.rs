@@ -45,6 +45,7 @@ impl Game {
         ball.astray_since = None;
         ball.foul = None;
         ball.is_beyond = false;
+        ball.is_spent = false;
         self.room.set(entity, ball);
         self.room.set_hidden(entity, true);
         self.room.take_out(entity);

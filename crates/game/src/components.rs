@@ -64,6 +64,8 @@ pub(crate) struct Ball {
     pub radius: f64,
     /// True once it has crossed the foul line, out of a hand.
     pub is_beyond: bool,
+    /// True from its crossing until a hand or the rack has it again: it cannot be delivered twice.
+    pub is_spent: bool,
     /// Whether the head was beyond the foul line when the hand last let it go.
     pub foul: Option<bool>,
     /// Since which step it has lain outside its cell.

@@ -382,6 +382,11 @@ pub struct RulesConfig {
     pub against_kickback_m: f64,
     /// Slower than this at its fastest point, a thing is still [m/s].
     pub still_speed_mps: f64,
+    /// A pin that leans less than this and turns slower than `rocking_turn_radps` only rocks: it cannot fall any more and
+    /// counts as still [degrees].
+    pub rocking_lean_deg: f64,
+    /// See `rocking_lean_deg`; a pin tips from about 1.2 rad/s [rad/s].
+    pub rocking_turn_radps: f64,
     /// How long everything must be still before the throw ends [s].
     pub still_for_s: f64,
     /// A throw ends this long after the ball passes the head pin, still or not [s].

@@ -1,12 +1,12 @@
 //! Games of bowling: which button's game is played, what the next delivery is, what the sheets say.
 
-use crate::components::Held;
+use crate::Game;
+use crate::components::PushButton;
 use crate::condition::Button;
 use crate::event::EventKind;
 use crate::room::Room;
 use crate::score::{Delivery, Roll, ScoreSheet};
 use crate::throw::Stage;
-use crate::{Game, hand::Hand};
 
 /// A press that waits for its confirmation.
 #[derive(Clone, Copy, Debug)]
@@ -49,22 +49,30 @@ impl Game {
     /// Builds the room of a button's condition and begins a new sheet. What the hand held stays behind in the old room.
     fn start_game(&mut self, button: Button) {
         let config = self.conditions.of(button);
+        let buttons = self
+            .room
+            .buttons
+            .map(|entity| self.room.get::<PushButton>(entity));
         self.room = Room::new(config)
             .expect("every condition's room was built once when the session began");
+        // The hand that pressed is still on the button: in the new room it must not press again.
+        for (entity, before) in self.room.buttons.into_iter().zip(buttons) {
+            let mut button: PushButton = self.room.get(entity);
+            button.is_pressed = before.is_pressed;
+            self.room.set(entity, button);
+        }
         self.stage = Stage::Ready {
             disturbed_since: None,
         };
         self.pending = None;
         self.playing = Some(button);
         *self.sheet_mut(button) = ScoreSheet::new(self.frames);
-        let none: Option<Held> = None;
-        self.hand = Hand {
-            held: none,
-            let_go: None,
-            candidate: None,
-            before: None,
-            ..std::mem::take(&mut self.hand)
-        };
+        self.hand.held = None;
+        self.hand.let_go = None;
+        self.hand.candidate = None;
+        // The new room's hand has been nowhere yet: it appears where it is.
+        self.hand.before = None;
+        self.place_hand();
         self.record(EventKind::GameStarted { button });
     }
 

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 use hecs::Entity;
-use physics::{Motion, Pose};
+use physics::query::{Limits, separation};
+use physics::{Motion, Pose, Shape};
 
 use crate::Game;
 use crate::components::{Ball, Held, Journey, Pin, PinKeeper};
@@ -14,6 +15,9 @@ use crate::room::Room;
 
 /// How often a held thing is pushed out of the boxes that it is carried into; corners take more than one.
 const PUSHES: usize = 3;
+
+/// A held thing may reach this deep into a box [m]: where physics lets resting bodies lie.
+const CONTACT: f64 = 1e-6;
 
 impl Game {
     /// Closes or opens the hand. Without a tracked hand the grip stays as it was.
@@ -52,7 +56,7 @@ impl Game {
             hand_from_body,
         });
         self.hand.let_go = None;
-        self.set_foul(entity, None);
+        self.note_on_ball(entity, None);
         let model = self.room.model(entity);
         self.record(EventKind::Grabbed { model });
     }
@@ -84,7 +88,7 @@ impl Game {
         self.room.world.set_velocity(id, used.linear, used.angular);
         self.hand.let_go = Some(held.entity);
         let is_foul = self.head_is_beyond();
-        self.set_foul(held.entity, Some(is_foul));
+        self.note_on_ball(held.entity, Some(is_foul));
         self.record(EventKind::Released(Release {
             model: self.room.model(held.entity),
             used,
@@ -96,11 +100,12 @@ impl Game {
         }));
     }
 
-    /// Notes on a ball where the head was at its release.
-    fn set_foul(&self, entity: Entity, foul: Option<bool>) {
+    /// Notes on a ball that a hand has had it, and whether the head was beyond the foul line at its release.
+    fn note_on_ball(&self, entity: Entity, foul: Option<bool>) {
         if let Ok(mut ball) = self.room.ecs.get::<&mut Ball>(entity) {
             ball.foul = foul;
             ball.is_beyond = false;
+            ball.is_spent = false;
         }
     }
 }
@@ -128,11 +133,16 @@ fn is_free(room: &Room, entity: Entity) -> bool {
 
 /// The pose nearest to `target` in which a held thing does not reach into the building: a hand can pass through a floor, a
 /// ball must not be let go inside it.
+///
+/// Each box that the target reaches into holds it back on the side where the thing is now, along the normal between the two;
+/// the shallowest way out of a deep overlap would often be the far side.
 pub(crate) fn kept_out(room: &Room, entity: Entity, target: Pose) -> Pose {
-    let compound = room.body(entity).compound();
+    let body = room.body(entity);
+    let (compound, now) = (body.compound(), body.pose());
+    let limits = Limits::default();
     let mut pose = target;
     for _ in 0..PUSHES {
-        let mut deepest: Option<(f64, DVec3)> = None;
+        let mut is_clear = true;
         for (box_pose, half, shape) in &room.obstacles {
             let local = box_pose.inverse().transform_point(pose.position);
             let outside = (local - local.clamp(-*half, *half)).length();
@@ -140,21 +150,30 @@ pub(crate) fn kept_out(room: &Room, entity: Entity, target: Pose) -> Pose {
                 continue;
             }
             for part in compound.parts() {
-                let part_pose = pose * part.pose;
-                let limits = physics::query::Limits::default();
-                let found = physics::query::separation(
-                    (shape, box_pose),
-                    (&part.shape, &part_pose),
-                    None,
-                    limits,
-                );
-                if found.gap < deepest.map_or(0.0, |(gap, _)| gap) {
-                    deepest = Some((found.gap, found.normal));
+                let (part_now, part_then) = (now * part.pose, pose * part.pose);
+                let overlap =
+                    separation((shape, box_pose), (&part.shape, &part_then), None, limits).gap;
+                if overlap < -CONTACT {
+                    let normal =
+                        separation((shape, box_pose), (&part.shape, &part_now), None, limits)
+                            .normal;
+                    let way_out = -gap_along(normal, (shape, box_pose), (&part.shape, &part_then));
+                    pose.position += normal * way_out.max(0.0);
+                    is_clear = false;
                 }
             }
         }
-        let Some((gap, normal)) = deepest else { break };
-        pose.position -= normal * gap;
+        if is_clear {
+            break;
+        }
     }
     pose
+}
+
+/// Gap between the tangent planes of two shapes along a normal that points from the first to the second [m].
+fn gap_along(normal: DVec3, (a, pose_a): (&Shape, &Pose), (b, pose_b): (&Shape, &Pose)) -> f64 {
+    let farthest = |shape: &Shape, pose: &Pose, direction: DVec3| {
+        pose.transform_point(shape.support(pose.rotation.conjugate() * direction))
+    };
+    normal.dot(farthest(b, pose_b, -normal) - farthest(a, pose_a, normal))
 }

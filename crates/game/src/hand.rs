@@ -90,7 +90,7 @@ impl Game {
     }
 
     /// Shows and hides the hand, and puts it where it reappears or jumps to without a push on the way.
-    fn place_hand(&mut self) {
+    pub(crate) fn place_hand(&mut self) {
         let hand = self.room.hand;
         let id = self.room.id(hand);
         let is_solid = self.hand.now.is_some() && self.hand.let_go.is_none();

@@ -287,6 +287,7 @@ impl<'a> Builder<'a> {
                 home,
                 radius,
                 is_beyond: false,
+                is_spent: false,
                 foul: None,
                 astray_since: None,
                 journey: Journey::InRoom,

@@ -41,6 +41,9 @@ pub(crate) struct Throw {
 
 impl Game {
     /// Watches the foul line, and starts a throw when the deck is ready for one.
+    ///
+    /// A ball is delivered once: one that comes back over the line and crosses it again, or that crosses it while the
+    /// pinsetter works, is no delivery until a hand or the rack has had it.
     pub(crate) fn watch_foul_line(&mut self) {
         for entity in self.room.balls.clone() {
             let mut ball: Ball = self.room.get(entity);
@@ -51,7 +54,12 @@ impl Game {
             let has_crossed = is_beyond && !ball.is_beyond;
             ball.is_beyond = is_beyond;
             self.room.set(entity, ball);
-            if has_crossed && matches!(self.stage, Stage::Ready { .. }) {
+            if !has_crossed || ball.is_spent {
+                continue;
+            }
+            ball.is_spent = true;
+            self.room.set(entity, ball);
+            if matches!(self.stage, Stage::Ready { .. }) {
                 let is_foul = ball.foul.unwrap_or_else(|| self.head_is_beyond());
                 self.start_throw(entity, velocity, is_foul);
             }
@@ -175,17 +183,23 @@ fn struck_pin(room: &Room) -> Option<u8> {
 
 /// Whether every pin that could still change the count is still.
 fn pins_are_still(room: &Room) -> bool {
-    let slow = room.config.rules.still_speed_mps;
     room.pins.iter().all(|pin| {
-        let body = room.body(*pin);
-        if room.get::<Pin>(*pin).keeper != PinKeeper::Nobody
-            || body.is_asleep()
-            || !is_over_deck(room, *pin)
-        {
-            return true;
-        }
-        body.linear_velocity().length() + body.angular_velocity().length() * PIN_REACH < slow
+        let is_out = room.get::<Pin>(*pin).keeper != PinKeeper::Nobody || !is_over_deck(room, *pin);
+        is_out || room.body(*pin).is_asleep() || is_still(room, *pin)
     })
+}
+
+/// Whether a pin moves too slowly to matter, or only rocks on its base.
+fn is_still(room: &Room, pin: Entity) -> bool {
+    let rules = &room.config.rules;
+    let body = room.body(pin);
+    let axis = body.pose().rotation * DVec3::Y;
+    // Spin about its own axis moves no surface: such a pin stands or lies as if it were still.
+    let turning = body.angular_velocity().cross(axis).length();
+    let only_rocks = axis.angle_between(DVec3::Y) < rules.rocking_lean_deg.to_radians()
+        && turning < rules.rocking_turn_radps;
+    let turning = if only_rocks { 0.0 } else { turning };
+    body.linear_velocity().length() + turning * PIN_REACH < rules.still_speed_mps
 }
 
 /// Whether the ball lies in the pit, is on its way back, or is still.

@@ -346,6 +346,8 @@ fn rules(config: &Config) -> Result<(), Invalid> {
     table.within("left_deck_below_m", rules.left_deck_below_m, 0.005, 0.5)?;
     table.within("against_kickback_m", rules.against_kickback_m, 0.0, 0.1)?;
     table.within("still_speed_mps", rules.still_speed_mps, 0.001, 1.0)?;
+    table.within("rocking_lean_deg", rules.rocking_lean_deg, 0.0, 5.0)?;
+    table.within("rocking_turn_radps", rules.rocking_turn_radps, 0.0, 0.6)?;
     table.within("still_for_s", rules.still_for_s, 0.0, 10.0)?;
     table.within("end_after_headpin_s", rules.end_after_headpin_s, 1.0, 120.0)?;
     table.within(

@@ -1,0 +1,11 @@
+//! The game as a participant meets it: real physics, everything through inputs.
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+
+/// Whole throws.
+mod play;
+/// The same inputs give the same bits.
+mod reproduce;
+/// Buttons, walking, touching, dropping.
+mod room;
+/// A participant for tests.
+mod support;
