@@ -275,6 +275,16 @@ impl Body {
         r * DMat3::from_diagonal(i.recip()) * r.transpose()
     }
 
+    /// Inertia, world frame [kg m2].
+    pub(crate) fn inertia(&self) -> DMat3 {
+        let i = self.mass.inertia;
+        if i.x == i.y && i.y == i.z {
+            return DMat3::from_diagonal(i);
+        }
+        let r = DMat3::from_quat(self.rotation);
+        r * DMat3::from_diagonal(i) * r.transpose()
+    }
+
     /// Adds an impulse [N s] at the arm [m] from the centre of mass, Eq. (3)-(6).
     pub(crate) fn push(&mut self, arm: DVec3, impulse: DVec3) {
         if self.is_dynamic() {

@@ -2,7 +2,7 @@
 
 use crate::pose::Pose;
 use crate::shape::{Kind, Shape, ShapeError};
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 
 /// What a turn of the body does to its surface; decides how far a spinning body can reach in a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,6 +23,8 @@ pub struct Part {
     /// `body_from_part`; the body frame has its origin at the centre of mass.
     pub pose: Pose,
     pub(crate) rotation: DMat3,
+    /// Whether the part is not turned in the body.
+    pub(crate) is_square: bool,
     pub(crate) radius: f64,
 }
 
@@ -55,6 +57,7 @@ impl Compound {
                 shape,
                 pose,
                 rotation: DMat3::from_quat(pose.rotation),
+                is_square: pose.rotation == DQuat::IDENTITY,
                 radius: shape.bounding_radius(),
             })
             .collect();

@@ -29,7 +29,7 @@ impl Known {
             Known::Frustum(a, b, h) => Shape::frustum(a, b, h),
             Known::Cuboid(h) => Shape::cuboid(h),
         }
-        .unwrap()
+        .expect("sizes are positive")
     }
 
     fn height(self, n: DVec3) -> f64 {
@@ -106,7 +106,7 @@ fn climb(gap: &impl Fn(DVec3) -> f64, start: DVec3) -> f64 {
         let mut moved = false;
         for k in 0..8 {
             let (s, c) = (turn + f64::from(k) * std::f64::consts::FRAC_PI_4).sin_cos();
-            let m = (n + (u * c + w * s) * h).normalize();
+            let m = (n + (u * c + w * s) * h).normalize_or(n);
             let value = gap(m);
             if value > best {
                 (n, best, moved) = (m, value, true);
@@ -149,7 +149,7 @@ fn pair(random: &mut Random, i: usize, j: usize, gap: f64) -> ((Known, Pose), (K
         Pose::new(random.vector(), random.rotation()),
     );
     let b = kinds(random)[j];
-    let (direction, rotation) = (random.vector().normalize(), random.rotation());
+    let (direction, rotation) = (random.direction(), random.rotation());
     let (mut low, mut high) = (0.0, 6.0);
     for _ in 0..40 {
         let middle = 0.5 * (low + high);

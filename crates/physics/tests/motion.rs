@@ -129,7 +129,7 @@ fn falls(pin_shape: &Arc<Compound>, angle: f64, direction: f64, e: f64, mu: f64)
         sleeping: false,
         ..Settings::default()
     })
-    .unwrap();
+    .expect("these settings are fine");
     let m = material(e, mu);
     floor(&mut world, m);
     let mut def = pin(pin_shape, m, DVec3::ZERO);

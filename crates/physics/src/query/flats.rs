@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::{Placed, Separation};
+use super::{Placed, Separation, gap_along};
 use crate::shape::Kind;
 
 /// Angle within which a face counts as square to the normal [rad]; a metre of face then rises by 0.1 nm.
@@ -21,6 +21,19 @@ pub(super) fn normals(shape: &Placed) -> impl Iterator<Item = DVec3> {
         _ => ([x; 6], 0),
     };
     list.into_iter().take(count)
+}
+
+/// The answer at once, if `n` is square to a face of either shape and the closest points line up there.
+///
+/// When apart that is the global optimum; in a shallow overlap, where the last step's normal was this one, the
+/// nearest. Deep overlaps are searched for a shallower way out.
+pub(super) fn square_on(a: &Placed, b: &Placed, n: DVec3, s: f64) -> Option<Separation> {
+    if s < -0.05 * a.shape.size().min(b.shape.size()) {
+        return None;
+    }
+    let square = |m: &DVec3| m.dot(n) > 1.0 - 1e-14;
+    let face = normals(a).chain(normals(b).map(|m| -m)).find(square)?;
+    line_up(a, b, face, gap_along(a, b, face)).ok()
 }
 
 /// The answer at `n`, with gap `s`, if the closest points line up there; else the offset across n that remains.

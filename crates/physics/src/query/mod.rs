@@ -13,7 +13,7 @@ mod flats;
 use glam::{DMat3, DVec3};
 
 use crate::pose::Pose;
-use crate::shape::Shape;
+use crate::shape::{Kind, Shape};
 
 /// Where two shapes touch, Eq. (1)-(2) of the paper.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -150,11 +150,13 @@ pub(crate) fn separation_placed(
     if let Some(answer) = closed::separation(a, b) {
         return answer;
     }
-    let centres = (b.position - a.position).try_normalize();
-    let first = start.or(centres).unwrap_or(DVec3::Y);
+    let first = start.or_else(|| centres(a, b)).unwrap_or(DVec3::Y);
     let early = gap_along(a, b, first);
     if early > limits.enough {
         return along(a, b, first, early);
+    }
+    if let Some(answer) = flats::square_on(a, b, first, early) {
+        return answer;
     }
     let mut best = ascent::ascend(a, b, first, limits);
     if best.gap > limits.enough || (best.gap > 0.0 && !best.capped) {
@@ -192,6 +194,18 @@ pub(crate) fn separation_placed(
         }
     }
     best
+}
+
+/// Where the search starts without a known normal: the line of centres.
+///
+/// The middle of a long box says little about which of its faces is near; there the direction from the box to the
+/// other's centre takes its place.
+fn centres(a: &Placed, b: &Placed) -> Option<DVec3> {
+    match (&a.shape.kind, &b.shape.kind) {
+        (Kind::Cuboid { .. }, _) => closed::outside(a, b.position).map(|(_, n)| n),
+        (_, Kind::Cuboid { .. }) => closed::outside(b, a.position).map(|(_, n)| -n),
+        _ => (b.position - a.position).try_normalize(),
+    }
 }
 
 /// The answer along one normal without any search.

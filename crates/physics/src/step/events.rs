@@ -24,9 +24,13 @@ impl World {
     pub(crate) fn run_events(&mut self, dt: f64) {
         let count = self.bodies.len();
         let mut events: Vec<Event> = Vec::new();
-        for b in 1..count {
-            for a in 0..b {
-                events.extend(self.first_contact(a, b, 0.0, dt));
+        let moving: Vec<usize> = (0..count).filter(|i| !self.bodies[*i].is_still()).collect();
+        for slot in &moving {
+            for other in 0..count {
+                let counted = other < *slot && !self.bodies[other].is_still();
+                if other != *slot && !counted {
+                    events.extend(self.first_contact(*slot, other, 0.0, dt));
+                }
             }
         }
         for _ in 0..EVENTS {
@@ -209,11 +213,9 @@ impl World {
         if carried.is_empty() || span < 1e-9 {
             return;
         }
-        let lasting = touches
-            .iter()
-            .filter(|touch| self.pairs.part(touch.key).touching);
-        let mut rows: Vec<_> = lasting.map(|touch| self.row(*touch, span)).collect();
-        self.carry(&mut rows, &carried, span);
+        let lasts = |touch: &&Touch| self.pairs.part(touch.key).touching;
+        let lasting: Vec<Touch> = touches.iter().filter(lasts).copied().collect();
+        self.carry(&lasting, &carried, span);
     }
 }
 

@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use super::touch::Touch;
+
 /// Two parts of two bodies.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PartPair {
@@ -12,6 +14,8 @@ pub(crate) struct PartPair {
     /// Gap plus the ways of both bodies when it was measured [m]: they are apart until their ways have used it up.
     pub clearance: f64,
     pub touching: bool,
+    /// The contact as it was when the two bodies' ways were these: as long as neither moves it stays so.
+    pub seen: Option<(f64, f64, Touch)>,
 }
 
 /// Two bodies, `a < b`.

@@ -5,42 +5,23 @@
 //! half and another answer lead on to the end; so a body that passes between flight and contact takes the velocity of
 //! that very moment along, and energy is kept to second order.
 //!
-//! In an answer each contact takes the e = 0 blend of Eq. (9) once, with the friction rate of that half; then the
-//! normal impulses alone are iterated until no contact approaches. Iterating the blend itself never settles when
-//! a body has two contacts. A flat base on a flat face is one contact in closed form.
-
-use glam::{DMat3, DVec3};
+//! How the contacts are answered is in `solve.rs`.
 
 use super::RELEASE;
-use super::touch::{Base, Touch, coefficients};
+use super::solve::{Mover, Row, answer_group, group};
+use super::touch::{Touch, coefficients};
 use crate::response::friction_rate_per_step;
 use crate::world::World;
 
-/// Most passes over the normals of a step.
-const PASSES: usize = 40;
 /// Depth that a lasting contact keeps [m]; deeper ones are pushed out slowly.
 const SLOP: f64 = 5e-6;
 /// Gap that is not worth closing [m]; a standing pin then has no velocity at all.
 const EXACT: f64 = 1e-9;
 
-/// A lasting contact while it is being answered.
-pub(crate) struct Row {
-    touch: Touch,
-    k: DMat3,
-    /// Approach that is allowed: a gap may close in the stretch, an overlap must open.
-    allowed: f64,
-    /// Friction rate of half a stretch.
-    rate: f64,
-    /// Normal impulse so far [N s].
-    pressed: f64,
-    /// A base's impulse and torque impulse so far, for undoing.
-    given: (DVec3, DVec3),
-}
-
 impl World {
     /// Answers all lasting contacts, and sets everybody off for the step.
     pub(crate) fn rest(&mut self, dt: f64) {
-        let mut rows = self.gather(dt);
+        let touches = self.gather();
         let gravity = self.settings.gravity;
         let mut carried = Vec::new();
         for (slot, body) in self.bodies.iter_mut().enumerate() {
@@ -50,70 +31,68 @@ impl World {
                 body.acceleration = gravity;
             }
         }
-        self.carry(&mut rows, &carried, dt);
+        self.carry(&touches, &carried, dt);
         for body in &mut self.bodies {
             body.look_ahead(dt);
         }
     }
 
-    /// Takes the bodies `slots` through a stretch of `span` seconds that begins at their clocks.
-    pub(crate) fn carry(&mut self, rows: &mut [Row], slots: &[usize], span: f64) {
+    /// Takes the bodies `carried` through a stretch of `span` seconds that begins at their clocks.
+    ///
+    /// Other bodies of the `touches` keep the stretch they are in and only take impulses.
+    pub(crate) fn carry(&mut self, touches: &[Touch], carried: &[usize], span: f64) {
         let half = 0.5 * span;
         let kick = self.settings.gravity * half;
-        for slot in slots {
-            self.bodies[*slot].linear += kick;
-        }
-        self.answer_rows(rows, half);
-        let mut middle = Vec::with_capacity(slots.len());
-        for slot in slots {
-            let body = &mut self.bodies[*slot];
-            middle.push((body.linear, body.momentum));
-            body.linear += kick;
-        }
-        for row in rows.iter_mut() {
-            // What closes a gap or opens an overlap on the way must not be left over at the end.
-            row.allowed = 0.0;
-            row.pressed = 0.0;
-            row.given = (DVec3::ZERO, DVec3::ZERO);
-        }
-        self.answer_rows(rows, half);
-        for (slot, (linear, momentum)) in slots.iter().zip(middle) {
-            let body = &mut self.bodies[*slot];
-            body.bend = (
-                (body.linear - linear) / half,
-                (body.momentum - momentum) / half,
-            );
-            (body.linear, body.momentum) = (linear, momentum);
-            body.middle = body.clock + half;
-        }
-    }
-
-    /// Stops every approach at the rows' contacts, with their friction.
-    fn answer_rows(&mut self, rows: &mut [Row], half: f64) {
-        for row in rows.iter_mut().filter(|r| r.touch.base.is_none()) {
-            self.rub(row);
-        }
-        let enough = 1e-4 * self.settings.gravity.length() * half + 1e-15;
-        for _ in 0..PASSES {
-            let mut worst: f64 = 0.0;
-            for row in rows.iter_mut() {
-                worst = worst.max(match row.touch.base {
-                    Some(base) => self.stand(row, &base),
-                    None => self.press(row),
-                });
+        let enough = 1e-4 * kick.length() + 1e-15;
+        let mut slots = carried.to_vec();
+        for slot in touches.iter().flat_map(|t| [t.a, t.b]) {
+            if !slots.contains(&slot) {
+                slots.push(slot);
             }
-            if worst <= enough {
-                break;
+        }
+        let mut movers: Vec<Mover> = slots.iter().map(|s| Mover::new(&self.bodies[*s])).collect();
+        let mut rows = self.rows(touches, &slots, &movers, span);
+        let ends = group(&mut rows, &movers);
+        let before = movers.clone();
+        let answer = |movers: &mut [Mover], rows: &mut [Row]| {
+            for mover in &mut movers[..carried.len()] {
+                mover.linear += kick;
+            }
+            let mut start = 0;
+            for end in &ends {
+                answer_group(&mut rows[start..*end], movers, &self.bodies, enough);
+                start = *end;
+            }
+        };
+        answer(&mut movers, &mut rows);
+        let middle = movers.clone();
+        rows.iter_mut().for_each(Row::renew);
+        answer(&mut movers, &mut rows);
+        for (i, slot) in slots.iter().enumerate() {
+            let body = &mut self.bodies[*slot];
+            if !body.is_dynamic() {
+                continue;
+            }
+            let inertia = body.inertia();
+            if i < carried.len() {
+                body.linear = middle[i].linear;
+                body.momentum = inertia * middle[i].angular;
+                let turned = inertia * (movers[i].angular - middle[i].angular);
+                body.bend = ((movers[i].linear - middle[i].linear) / half, turned / half);
+                body.middle = body.clock + half;
+            } else {
+                body.linear += movers[i].linear - before[i].linear;
+                body.momentum += inertia * (movers[i].angular - before[i].angular);
             }
         }
     }
 
     /// Lasting contacts of awake bodies, with their geometry; counts them per body.
-    fn gather(&mut self, dt: f64) -> Vec<Row> {
+    fn gather(&mut self) -> Vec<Touch> {
         for body in &mut self.bodies {
             body.contacts = 0;
         }
-        let mut rows = Vec::new();
+        let mut touches = Vec::with_capacity(self.pairs.touching.len());
         for key in self.pairs.touching.clone() {
             let (a, b) = (key.a as usize, key.b as usize);
             if !self.bodies[a].is_active() && !self.bodies[b].is_active() {
@@ -126,23 +105,37 @@ impl World {
             }
             self.bodies[a].contacts += 1;
             self.bodies[b].contacts += 1;
-            rows.push(self.row(touch, dt));
+            touches.push(touch);
         }
-        rows
+        touches
     }
 
-    /// A contact made ready for a stretch of `span` seconds.
-    pub(crate) fn row(&self, touch: Touch, span: f64) -> Row {
-        let rate = coefficients(&self.bodies[touch.a], &self.bodies[touch.b]).friction_rate;
+    /// Contacts made ready for a stretch of `span` seconds.
+    fn rows(&self, touches: &[Touch], slots: &[usize], movers: &[Mover], span: f64) -> Vec<Row> {
+        let number = |slot: usize| {
+            let found = slots.iter().position(|s| *s == slot);
+            found.expect("the bodies of every touch are among the movers")
+        };
         let reference = self.settings.friction_reference_s;
-        Row {
-            k: touch.compliance(&self.bodies),
-            allowed: self.allowed_approach(&touch, span),
-            rate: friction_rate_per_step(rate, 0.5 * span, reference),
-            pressed: 0.0,
-            given: (DVec3::ZERO, DVec3::ZERO),
-            touch,
-        }
+        let mut known: Option<(f64, f64)> = None;
+        let make = |touch: &Touch| {
+            let pair = coefficients(&self.bodies[touch.a], &self.bodies[touch.b]);
+            // Most contacts of a scene share their friction rate: the power is taken once for all in a row.
+            let rate = match known {
+                Some((rate, per_step)) if rate == pair.friction_rate => per_step,
+                _ => friction_rate_per_step(pair.friction_rate, 0.5 * span, reference),
+            };
+            known = Some((pair.friction_rate, rate));
+            let numbers = (number(touch.a), number(touch.b));
+            Row::new(
+                *touch,
+                numbers,
+                movers,
+                self.allowed_approach(touch, span),
+                rate,
+            )
+        };
+        touches.iter().map(make).collect()
     }
 
     /// Largest approach speed that a contact may keep [m/s]; negative when it is to be pushed apart.
@@ -163,91 +156,5 @@ impl World {
             0.25 * self.resting_speed()
         };
         -((-touch.gap - SLOP).max(0.0) / dt).min(fastest)
-    }
-
-    /// The e = 0 blend of Eq. (9) at a point: `F00 + mu (F01 - F00)`.
-    fn rub(&mut self, row: &mut Row) {
-        let n = row.touch.normal;
-        let slip = row.touch.slip(&self.bodies);
-        let approach = n.dot(slip) - row.allowed;
-        if approach <= 0.0 {
-            return;
-        }
-        let f00 = n * (-approach / n.dot(row.k * n));
-        let mut impulse = f00;
-        if row.rate > 0.0 {
-            let f01 = row.k.inverse() * (n * row.allowed - slip);
-            impulse = f00 + (f01 - f00) * row.rate;
-            if impulse.dot(n) > 0.0 {
-                return;
-            }
-        }
-        row.pressed = -impulse.dot(n);
-        row.touch.push(&mut self.bodies, impulse);
-    }
-
-    /// One pass at a point: the normal impulse that stops the approach, or less of it if it pulls.
-    fn press(&mut self, row: &mut Row) -> f64 {
-        let n = row.touch.normal;
-        let excess = n.dot(row.touch.slip(&self.bodies)) - row.allowed;
-        let stiffness = n.dot(row.k * n);
-        let pressed = (row.pressed + excess / stiffness).max(0.0);
-        let change = pressed - row.pressed;
-        row.pressed = pressed;
-        if change != 0.0 {
-            row.touch.push(&mut self.bodies, n * -change);
-        }
-        (change * stiffness).abs()
-    }
-
-    /// One pass at a flat base: takes back what it gave and answers anew.
-    ///
-    /// The impulse `J` along the normal stops the base. It acts at the centre of pressure, where its torque takes
-    /// what is left of the angular momentum across the normal. Inside the patch both stop *exactly*, which is why a
-    /// standing pin does not drift; outside the body tips about the nearest point of the patch.
-    fn stand(&mut self, row: &mut Row, base: &Base) -> f64 {
-        let (own, other) = if base.of_a {
-            (row.touch.a, row.touch.b)
-        } else {
-            (row.touch.b, row.touch.a)
-        };
-        if !self.bodies[own].is_dynamic() || self.bodies[other].is_dynamic() {
-            return self.press(row);
-        }
-        let ground = self.bodies[other].velocity_at(base.centre);
-        let body = &mut self.bodies[own];
-        let (m, up) = (body.mass.mass, base.up);
-        body.linear -= row.given.0 / m;
-        body.momentum -= row.given.1;
-        let velocity = body.linear - ground;
-        let load = -m * (up.dot(velocity) + row.allowed);
-        let before = row.given;
-        row.given = (DVec3::ZERO, DVec3::ZERO);
-        if load <= 0.0 {
-            return before.0.length() / m;
-        }
-        let spin = up * up.dot(body.momentum);
-        let along = velocity - up * up.dot(velocity);
-        let arm = base.centre - body.position;
-        let friction = along * (-m * row.rate);
-        let tilt = body.momentum - spin + arm.cross(friction + up * load);
-        let pressure = base.centre + up.cross(tilt) * (-1.0 / load);
-        if base.holds(pressure) {
-            // Set, not added up: a rounding error left over would move the body for ever.
-            let after = ground - up * row.allowed + along * (1.0 - row.rate);
-            let turning = spin * (1.0 - row.rate);
-            row.given = ((after - body.linear) * m, turning - body.momentum);
-            (body.linear, body.momentum) = (after, turning);
-        } else {
-            let before = (body.linear, body.momentum);
-            row.touch.set_point(base.clamp(pressure), &self.bodies);
-            row.k = row.touch.compliance(&self.bodies);
-            row.pressed = 0.0;
-            self.rub(row);
-            self.press(row);
-            let body = &self.bodies[own];
-            row.given = ((body.linear - before.0) * m, body.momentum - before.1);
-        }
-        (row.given.0 - before.0).length() / m
     }
 }

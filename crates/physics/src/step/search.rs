@@ -8,7 +8,7 @@
 use glam::DVec3;
 
 use super::pairs::{Key, PartPair};
-use super::touch::place;
+use super::touch::{Frame, place};
 use super::{CONTACT, SINK};
 use crate::body::Body;
 use crate::compound::Part;
@@ -47,7 +47,7 @@ impl World {
             return None;
         }
         let (ways, reach) = (body_a.path + body_b.path, body_a.reach + body_b.reach);
-        if reach == 0.0 || self.pairs.get(a, b).clearance - ways > reach {
+        if self.pairs.get(a, b).clearance - ways > reach {
             return None;
         }
         let (pose_a, pose_b) = (body_a.pose_at(t0), body_b.pose_at(t0));
@@ -59,6 +59,9 @@ impl World {
         if self.pairs.get(a, b).parts.is_empty() {
             self.pairs.get_mut(a, b).parts = part_pairs(body_a, body_b, ways);
         }
+        let (body_a, body_b) = (&self.bodies[a], &self.bodies[b]);
+        let starts = (Frame::new(&pose_a), Frame::new(&pose_b));
+        let ends = (Frame::new(&body_a.end), Frame::new(&body_b.end));
         let mut first: Option<Event> = None;
         let mut clearance = f64::INFINITY;
         for part in 0..self.pairs.get(a, b).parts.len() {
@@ -67,12 +70,12 @@ impl World {
                 b: b as u32,
                 part: part as u32,
             };
-            let known = *self.pairs.part(key);
+            let known = self.pairs.part(key);
             if known.clearance - ways > reach {
                 clearance = clearance.min(known.clearance);
                 continue;
             }
-            let found = self.part_contact(&known, (a, b), (t0, dt), (&pose_a, &pose_b));
+            let found = self.part_contact(known, (a, b), (t0, dt), (&starts, &ends));
             let entry = self.pairs.part_mut(key);
             entry.normal = found.normal;
             entry.clearance = if entry.touching {
@@ -97,12 +100,12 @@ impl World {
         known: &PartPair,
         (a, b): (usize, usize),
         (t0, dt): (f64, f64),
-        (pose_a, pose_b): (&Pose, &Pose),
+        (starts, ends): (&(Frame, Frame), &(Frame, Frame)),
     ) -> Found {
         let (body_a, body_b) = (&self.bodies[a], &self.bodies[b]);
         let part_a = &body_a.compound.parts()[known.part_a as usize];
         let part_b = &body_b.compound.parts()[known.part_b as usize];
-        let mut placed = (place(part_a, pose_a), place(part_b, pose_b));
+        let mut placed = (starts.0.place(part_a), starts.1.place(part_b));
         let reach = body_a.reach + body_b.reach;
         if !known.touching {
             let rough = part_gap(&placed.0, part_a, &placed.1, part_b);
@@ -115,7 +118,7 @@ impl World {
             }
         }
         let bend = body_a.sweep().acceleration + body_b.sweep().acceleration;
-        let ends = (place(part_a, &body_a.end), place(part_b, &body_b.end));
+        let ends = (ends.0.place(part_a), ends.1.place(part_b));
         let mut normal = known.normal;
         let mut gap = if normal == DVec3::ZERO {
             0.0
@@ -126,7 +129,8 @@ impl World {
         let mut searched = false;
         let (mut time, mut end) = (t0, dt);
         for _ in 0..SEARCHES {
-            if !searched && (gap <= CONTACT || normal == DVec3::ZERO) {
+            let stale = gap <= CONTACT && !known.touching;
+            if !searched && (stale || normal == DVec3::ZERO) {
                 let found = self.search(&placed.0, &placed.1, normal);
                 (normal, gap, searched) = (found.normal, found.gap, true);
                 if time == t0 {
@@ -243,6 +247,7 @@ fn part_pairs(a: &Body, b: &Body, ways: f64) -> Vec<PartPair> {
                 normal: DVec3::ZERO,
                 clearance: ways + f64::MIN_POSITIVE - 1.0,
                 touching: false,
+                seen: None,
             });
         }
     }

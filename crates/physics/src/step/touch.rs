@@ -96,14 +96,38 @@ pub(crate) struct Touch {
     pub base: Option<Base>,
 }
 
+/// A pose with its rotation as a matrix, from which parts are placed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frame {
+    rotation: DMat3,
+    position: DVec3,
+}
+
+impl Frame {
+    pub fn new(pose: &Pose) -> Frame {
+        Frame {
+            rotation: DMat3::from_quat(pose.rotation),
+            position: pose.position,
+        }
+    }
+
+    /// A part of the body whose pose this is.
+    pub fn place<'a>(&self, part: &'a Part) -> Placed<'a> {
+        Placed {
+            shape: &part.shape,
+            rotation: if part.is_square {
+                self.rotation
+            } else {
+                self.rotation * part.rotation
+            },
+            position: self.position + self.rotation * part.pose.position,
+        }
+    }
+}
+
 /// A part of a body at a pose.
 pub(crate) fn place<'a>(part: &'a Part, pose: &Pose) -> Placed<'a> {
-    let rotation = DMat3::from_quat(pose.rotation);
-    Placed {
-        shape: &part.shape,
-        rotation: rotation * part.rotation,
-        position: pose.position + rotation * part.pose.position,
-    }
+    Frame::new(pose).place(part)
 }
 
 impl Touch {
@@ -166,8 +190,14 @@ impl World {
     /// The contact `key` at the bodies' current poses; remembers its normal.
     pub(crate) fn touch(&mut self, key: Key) -> Touch {
         let (a, b) = (key.a as usize, key.b as usize);
-        let known = *self.pairs.part(key);
+        let known = self.pairs.part(key);
         let (body_a, body_b) = (&self.bodies[a], &self.bodies[b]);
+        if let Some((way_a, way_b, touch)) = known.seen
+            && (way_a, way_b) == (body_a.path, body_b.path)
+        {
+            return touch;
+        }
+        let ways = (body_a.path, body_b.path);
         let part_a = &body_a.compound.parts()[known.part_a as usize];
         let part_b = &body_b.compound.parts()[known.part_b as usize];
         let (placed_a, placed_b) = (place(part_a, &body_a.pose()), place(part_b, &body_b.pose()));
@@ -185,7 +215,9 @@ impl World {
             base,
         };
         touch.set_point((found.point_a + found.point_b) * 0.5, &self.bodies);
-        self.pairs.part_mut(key).normal = found.normal;
+        let entry = self.pairs.part_mut(key);
+        entry.normal = found.normal;
+        entry.seen = Some((ways.0, ways.1, touch));
         touch
     }
 }

@@ -202,6 +202,14 @@ impl Random {
         DVec3::new(self.next(), self.next(), self.next())
     }
 
+    pub fn direction(&mut self) -> DVec3 {
+        loop {
+            if let Some(n) = self.vector().try_normalize() {
+                return n;
+            }
+        }
+    }
+
     pub fn rotation(&mut self) -> DQuat {
         DQuat::from_scaled_axis(self.vector() * 3.0)
     }
