@@ -1,0 +1,107 @@
+//! Makes the meshes and textures in `assets/` from `config/default.toml` and the pin's profile.
+//!
+//!     cargo run --bin make-assets             writes them
+//!     cargo run --bin make-assets -- --check  says which differ from what it would write, and fails if any does
+//!
+//! They are committed, so that the program needs no generator and a reviewer sees what changes.
+
+mod alley;
+mod mesh;
+mod pieces;
+mod textures;
+
+use anyhow::{Context, Result, bail};
+use game::Config;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+
+fn main() -> Result<()> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let check = match std::env::args().nth(1).as_deref() {
+        None => false,
+        Some("--check") => true,
+        Some(other) => bail!("unknown argument {other}: the only one is --check"),
+    };
+    let mut stale = Vec::new();
+    for (path, bytes) in assets(root)? {
+        let path = root.join("assets").join(path);
+        if check {
+            if std::fs::read(&path).ok().as_deref() != Some(&bytes) {
+                stale.push(path);
+            }
+        } else {
+            std::fs::write(&path, bytes)
+                .with_context(|| format!("cannot write {}", path.display()))?;
+            println!("{}", path.display());
+        }
+    }
+    if !stale.is_empty() {
+        let list: Vec<_> = stale.iter().map(|p| p.display().to_string()).collect();
+        bail!(
+            "not what make-assets writes: {}. Run `cargo run --bin make-assets`.",
+            list.join(", ")
+        );
+    }
+    Ok(())
+}
+
+/// Every generated file: its path in `assets/` and its bytes.
+fn assets(root: &Path) -> Result<Vec<(PathBuf, Vec<u8>)>> {
+    let config = Config::load(&root.join("config"), "alley", None, &[])?;
+    let source = root.join("assets/source/pin_profile.csv");
+    let csv = std::fs::read_to_string(&source)
+        .with_context(|| format!("cannot read {}", source.display()))?;
+    let profile = pieces::read_profile(&csv).with_context(|| source.display().to_string())?;
+
+    let mut files = Vec::new();
+    let mut meshes = vec![
+        ("pin", pieces::pin(&profile)),
+        ("ball", pieces::ball()),
+        ("hand_open", pieces::hand(0.0)),
+        ("hand_closed", pieces::hand(1.0)),
+        ("button_round", pieces::button(true)),
+        ("button_square", pieces::button(false)),
+        ("box", mesh::cuboid(glam::Vec3::ONE)),
+    ];
+    meshes.extend(alley::meshes(&config));
+    for (name, mesh) in meshes {
+        files.push((
+            PathBuf::from(format!("meshes/{name}.obj")),
+            mesh.to_obj(name).into_bytes(),
+        ));
+    }
+
+    let boards = config.lane.boards;
+    let textures = [
+        ("lane_boards", textures::boards(boards, true)),
+        ("approach_boards", textures::boards(boards, false)),
+        ("pin", textures::pin(config.pin.height_m as f32)),
+        (
+            "ball_blue",
+            textures::ball([22.0, 38.0, 96.0], [92.0, 140.0, 214.0], 5),
+        ),
+        (
+            "ball_green",
+            textures::ball([14.0, 66.0, 44.0], [104.0, 178.0, 120.0], 23),
+        ),
+        (
+            "ball_orange",
+            textures::ball([168.0, 74.0, 16.0], [244.0, 176.0, 84.0], 41),
+        ),
+        (
+            "ball_violet",
+            textures::ball([70.0, 22.0, 92.0], [178.0, 120.0, 204.0], 67),
+        ),
+    ];
+    for (name, texture) in textures {
+        let mut png = Cursor::new(Vec::new());
+        texture
+            .write_to(&mut png, image::ImageFormat::Png)
+            .context("cannot encode a texture")?;
+        files.push((
+            PathBuf::from(format!("textures/{name}.png")),
+            png.into_inner(),
+        ));
+    }
+    Ok(files)
+}
