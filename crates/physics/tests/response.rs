@@ -1,0 +1,160 @@
+//! The impact law as laws: over many random collisions, and against closed forms.
+
+mod support;
+
+use glam::{DMat3, DVec3};
+use physics::Response;
+use physics::response::{Coefficients, compliance, impulse};
+use support::Random;
+
+const BOTH: [Response; 2] = [Response::UnoSlater, Response::Guarded];
+
+/// A random eccentric collision: normal, approaching relative velocity, `K`.
+fn collision(random: &mut Random) -> (DVec3, DVec3, DMat3) {
+    let mut k = DMat3::ZERO;
+    for _ in 0..2 {
+        let rotation = DMat3::from_quat(random.rotation());
+        let inverse = random.vector().abs() * 5.0 + DVec3::splat(0.05);
+        let inertia = rotation * DMat3::from_diagonal(inverse) * rotation.transpose();
+        k += compliance((3.0 * random.next()).exp(), &inertia, random.vector());
+    }
+    let n = random.direction();
+    let dv = random.vector();
+    (n, if dv.dot(n) < 0.0 { -dv } else { dv }, k)
+}
+
+fn pair(elasticity: f64, friction_rate: f64) -> Coefficients {
+    Coefficients {
+        elasticity,
+        friction_rate,
+    }
+}
+
+fn energy_change(f: DVec3, dv: DVec3, k: DMat3) -> f64 {
+    f.dot(dv) + 0.5 * f.dot(k * f)
+}
+
+#[test]
+fn no_collision_adds_energy_and_every_one_separates() {
+    let mut random = Random(88172645463325252);
+    for response in BOTH {
+        for _ in 0..100_000 {
+            let (n, dv, k) = collision(&mut random);
+            let (e, mu) = (random.next().abs(), random.next().abs());
+            let f = impulse(response, pair(e, mu), n, dv, &k);
+            let before = 0.5 * dv.dot(k.inverse() * dv);
+            let change = energy_change(f, dv, k);
+            assert!(
+                change <= 1e-12 * before,
+                "{response:?} e {e} mu {mu} gains {change} of {before}"
+            );
+            assert!(
+                n.dot(dv + k * f) <= 1e-9,
+                "{response:?} e {e} mu {mu} still approaches"
+            );
+        }
+    }
+}
+
+#[test]
+fn guarded_never_pulls_and_never_hops_where_the_paper_does() {
+    let mut random = Random(7);
+    let (mut pulls, mut hops) = (0, 0);
+    for _ in 0..50_000 {
+        let (n, dv, k) = collision(&mut random);
+        let (e, mu) = (random.next().abs(), random.next().abs());
+        let paper = impulse(Response::UnoSlater, pair(e, mu), n, dv, &k);
+        pulls += i32::from(paper.dot(n) > 1e-12);
+        hops += i32::from(-n.dot(dv + k * paper) > n.dot(dv) * (1.0 + 1e-9));
+        let guarded = impulse(Response::Guarded, pair(e, mu), n, dv, &k);
+        assert!(guarded.dot(n) <= 1e-12, "pulls at e {e} mu {mu}");
+        assert!(
+            -n.dot(dv + k * guarded) <= n.dot(dv) * (1.0 + 1e-9),
+            "hops at e {e} mu {mu}"
+        );
+    }
+    assert!(
+        pulls > 100,
+        "the paper's law pulls in some of these: {pulls}"
+    );
+    assert!(hops > 100, "the paper's law hops in some of these: {hops}");
+}
+
+#[test]
+fn corners_of_the_blend_are_the_special_impulses() {
+    let mut random = Random(99);
+    for _ in 0..2000 {
+        let (n, dv, k) = collision(&mut random);
+        let law = |e, mu| impulse(Response::UnoSlater, pair(e, mu), n, dv, &k);
+        let before = 0.5 * dv.dot(k.inverse() * dv);
+        // (iii) F00: along N and dV.N = 0.
+        assert!(law(0.0, 0.0).cross(n).length() < 1e-9);
+        assert!(n.dot(dv + k * law(0.0, 0.0)).abs() < 1e-9);
+        // (i) F10: along N and energy kept.
+        assert!(law(1.0, 0.0).cross(n).length() < 1e-9);
+        assert!(energy_change(law(1.0, 0.0), dv, k).abs() < 1e-9 * before.max(1.0));
+        // (iv) F01: dV = 0.
+        assert!((dv + k * law(0.0, 1.0)).length() < 1e-9);
+        // (ii) F11: dV = k N and energy kept.
+        assert!((dv + k * law(1.0, 1.0)).cross(n).length() < 1e-9);
+        assert!(energy_change(law(1.0, 1.0), dv, k).abs() < 1e-9 * before.max(1.0));
+        // Eq. (9) in between.
+        let (e, mu) = (random.next().abs(), random.next().abs());
+        let blend = law(0.0, 0.0)
+            + (law(1.0, 0.0) - law(0.0, 0.0)) * e
+            + (law(0.0, 1.0) - law(0.0, 0.0)) * mu
+            + (law(1.0, 1.0) - law(0.0, 1.0) - law(1.0, 0.0) + law(0.0, 0.0)) * (e * mu);
+        assert!((law(e, mu) - blend).length() < 1e-9 * (1.0 + blend.length()));
+    }
+}
+
+#[test]
+fn sphere_on_a_plane_meets_the_closed_forms() {
+    // Hard case 2.4: a uniform sphere, b = 2/5; slip s = v + R w.
+    let (m, r) = (6.8, 0.1085);
+    let inertia = DMat3::from_diagonal(DVec3::splat(1.0 / (0.4 * m * r * r)));
+    let arm = DVec3::new(0.0, -r, 0.0);
+    let k = compliance(1.0 / m, &inertia, arm);
+    let (v, w) = (DVec3::new(8.0, -1.0, 0.0), DVec3::new(0.0, 0.0, -20.0));
+    let dv = v + w.cross(arm);
+    let after = |e, mu| {
+        let f = impulse(Response::UnoSlater, pair(e, mu), DVec3::NEG_Y, dv, &k);
+        v + f / m
+    };
+    let slip = dv.x;
+    let close = |a: f64, b: f64| (a - b).abs() < 1e-9;
+    assert!(close(after(0.0, 0.0).x, 8.0) && close(after(0.0, 0.0).y, 0.0));
+    assert!(close(after(1.0, 0.0).x, 8.0) && close(after(1.0, 0.0).y, 1.0));
+    assert!(close(after(0.0, 1.0).x, 8.0 - slip * 2.0 / 7.0));
+    let f11 = after(1.0, 1.0);
+    assert!(close(f11.x, 8.0 - slip * 2.0 / 7.0));
+    assert!(close(f11.y, (1.0 + slip * slip * 2.0 / 7.0).sqrt()));
+}
+
+#[test]
+fn hop_of_the_paper_is_the_documented_one() {
+    // Slides at 8 m/s and touches at 1 m/s with e = mu = 0.49: about 1.3 m/s up by the paper, no more than 1 guarded.
+    let (m, r) = (6.8, 0.1085);
+    let inertia = DMat3::from_diagonal(DVec3::splat(1.0 / (0.4 * m * r * r)));
+    let k = compliance(1.0 / m, &inertia, DVec3::new(0.0, -r, 0.0));
+    let up = |response| {
+        let f = impulse(
+            response,
+            pair(0.49, 0.49),
+            DVec3::NEG_Y,
+            DVec3::new(8.0, -1.0, 0.0),
+            &k,
+        );
+        -1.0 + f.y / m
+    };
+    assert!(
+        (up(Response::UnoSlater) - 1.3).abs() < 0.05,
+        "{}",
+        up(Response::UnoSlater)
+    );
+    assert!(
+        (up(Response::Guarded) - 0.49).abs() < 1e-9,
+        "{}",
+        up(Response::Guarded)
+    );
+}
