@@ -13,7 +13,7 @@ use renderer::{
 /// Ten spheres of 2 000 triangles over a floor.
 fn scene(renderer: &mut Renderer) -> Scene {
     let add = |renderer: &mut Renderer, mesh: &MeshData| renderer.add_mesh(mesh).expect("drawable");
-    let ball_data = MeshData::sphere(0.12, 45);
+    let ball_data = MeshData::sphere(0.12, 46);
     let ball = add(renderer, &ball_data);
     let floor = add(renderer, &MeshData::cuboid(Vec3::new(3.0, 0.1, 6.0)));
     let mut instances: Vec<Instance> = (0..10)
