@@ -92,7 +92,9 @@ struct Surface {
 fn schlick(f0: f32, cosine: f32) -> f32 {
     // Materials below 2 % reflect nothing at grazing angles either: f0 = 0 is a purely matte surface.
     let f90 = saturate(50.0 * f0);
-    return f0 + (f90 - f0) * pow(1.0 - cosine, 5.0);
+    let x = 1.0 - cosine;
+    let x2 = x * x;
+    return f0 + (f90 - f0) * x2 * x2 * x;
 }
 
 // Light of `color` that a surface sends to the eye when it arrives from `to_light`.

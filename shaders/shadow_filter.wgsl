@@ -1,10 +1,10 @@
-// How much of the shadowing light reaches a point: a 4 x 4 grid of bilinear depth comparisons.
+// How much of the shadowing light reaches a point: a 3 x 3 grid of bilinear depth comparisons.
 // The grid is fixed, not jittered per pixel, so that both eyes see the same penumbra.
 
 @group(0) @binding(2) var shadow_map: texture_depth_2d;
 @group(0) @binding(3) var shadow_sampler: sampler_comparison;
 
-const SHADOW_TAPS: i32 = 4;
+const SHADOW_TAPS: i32 = 3;
 
 fn light_visibility(position: vec3f, normal: vec3f, to_light: vec3f) -> f32 {
     // A spot light's filter widens with distance, which is what clip w holds; for a parallel light it is 1.

@@ -8,7 +8,7 @@ use crate::scene::{Light, LightSource};
 use crate::{RenderError, shaders};
 
 /// Taps of the filter along a side, `SHADOW_TAPS` in shadow_filter.wgsl.
-const TAPS: f32 = 4.0;
+const TAPS: f32 = 3.0;
 
 /// Nearest depth that a spot light's shadow map holds [m].
 const SPOT_NEAR_M: f32 = 0.1;
