@@ -135,8 +135,8 @@ fn distant_surfaces_ten_millimetres_apart_are_kept_apart() {
         let quad = add(&mut renderer, &MeshData::quad(9.0, 9.0));
         let scene = Scene {
             instances: vec![
-                instance(quad, Material::unlit([0.5; 3]), Vec3::Z * -20.0),
                 instance(quad, Material::unlit([0.1; 3]), Vec3::Z * -20.01),
+                instance(quad, Material::unlit([0.5; 3]), Vec3::Z * -20.0),
             ],
             ..dark()
         };
