@@ -38,6 +38,8 @@ pub(crate) struct Pin {
     pub spot: DVec3,
     /// Where it stood when the next delivery was made ready; `None` when it is out of this rack.
     pub ready: Option<Pose>,
+    /// Since which step it has lain in the pit.
+    pub in_pit_since: Option<u64>,
     /// Who has it.
     pub keeper: PinKeeper,
 }

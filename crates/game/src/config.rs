@@ -27,7 +27,7 @@ pub struct Config {
     pub kickback: KickbackConfig,
     /// Where ball and pins fall behind the deck.
     pub pit: PitConfig,
-    /// The walls, and what is painted on the floor.
+    /// The walls, and the line that is painted on the floor.
     pub room: RoomConfig,
     /// Where the participant stands at first.
     pub start: StartConfig,
@@ -113,7 +113,7 @@ pub enum ObjectShape {
 pub struct LaneConfig {
     /// Width without gutters [m].
     pub width_m: f64,
-    /// Boards across the width.
+    /// Boards across the width, for the picture.
     pub boards: u32,
     /// Thickness of the boards [m].
     pub thickness_m: f64,
@@ -181,7 +181,7 @@ pub struct RoomConfig {
     pub height_m: f64,
     /// How close the head may walk to a wall [m].
     pub walk_margin_m: f64,
-    /// Length of the approach behind the foul line [m].
+    /// Length of the approach behind the foul line, for the picture [m].
     pub approach_length_m: f64,
     /// Width of the foul line [m].
     pub foul_line_width_m: f64,
@@ -423,6 +423,8 @@ pub struct PinsetterConfig {
     pub bar_height_m: f64,
     /// Height at which the sweep bar waits, above the deck [m].
     pub bar_rest_height_m: f64,
+    /// A pin that has lain in the pit this long is taken away [s].
+    pub pit_clears_after_s: f64,
     /// Time from the pit to the rack [s].
     pub ball_return_s: f64,
     /// Time the lift takes to raise the ball into its cell [s].

@@ -148,6 +148,7 @@ impl Game {
             let share = f64::from(step) / f64::from(input.steps);
             self.reach(share);
             self.push_buttons(share);
+            self.clear_pit();
             self.run_pinsetter();
             self.return_strays();
             self.room.world.step();

@@ -119,6 +119,12 @@ impl Cycle {
     }
 }
 
+/// Whether a thing lies in the pit: behind the deck, and its middle below it.
+fn is_in_pit(room: &Room, entity: Entity) -> bool {
+    let at = room.body(entity).pose().position;
+    at.z < room.config.lane.deck_end_z_m && at.y < 0.0
+}
+
 /// Pins of this rack.
 fn in_play(room: &Room) -> Vec<Entity> {
     let pins = room.pins.iter().copied();
@@ -204,6 +210,28 @@ impl Game {
     fn may_go_on(&self, cycle: &Cycle) -> bool {
         let held = self.hand.held.map(|held| held.entity);
         cycle.movement != Movement::BarUp || !cycle.set.iter().any(|(pin, _)| Some(*pin) == held)
+    }
+
+    /// Takes away what has lain in the pit for a while, as the belt of a real pit does: it cannot come back on the deck.
+    pub(crate) fn clear_pit(&mut self) {
+        let patience = self
+            .room
+            .steps_in(self.room.config.pinsetter.pit_clears_after_s);
+        let held = self.hand.held.map(|held| held.entity);
+        for pin in self.room.pins.clone() {
+            let mut state: Pin = self.room.get(pin);
+            let lies_there = state.keeper == PinKeeper::Nobody
+                && Some(pin) != held
+                && is_in_pit(&self.room, pin);
+            let since = lies_there.then(|| state.in_pit_since.unwrap_or(self.steps));
+            if since != state.in_pit_since {
+                state.in_pit_since = since;
+                self.room.set(pin, state);
+            }
+            if since.is_some_and(|since| self.steps >= since + patience) {
+                self.keep(pin, PinKeeper::Store);
+            }
+        }
     }
 
     /// What happens at the start of a movement.

@@ -250,6 +250,7 @@ impl<'a> Builder<'a> {
                 number,
                 spot,
                 ready: Some(pose),
+                in_pit_since: None,
                 keeper: PinKeeper::Nobody,
             };
             self.add(entity, (state, Grabbable));

@@ -106,9 +106,9 @@ fn a_value_of_the_wrong_type_is_named_with_file_and_line() {
         message.starts_with("config/blue.toml, line 2: key `objects.elasticity`: invalid type"),
         "{message}"
     );
-    let message = refusal("[lane]\nboards = -3\n");
+    let message = refusal("[gutter]\nfacets = -3\n");
     assert!(
-        message.starts_with("config/blue.toml, line 2: key `lane.boards`: invalid value"),
+        message.starts_with("config/blue.toml, line 2: key `gutter.facets`: invalid value"),
         "{message}"
     );
 }

@@ -373,6 +373,7 @@ fn rules(config: &Config) -> Result<(), Invalid> {
         ("bar_drop_s", machine.bar_drop_s),
         ("sweep_s", machine.sweep_s),
         ("set_s", machine.set_s),
+        ("pit_clears_after_s", machine.pit_clears_after_s),
         ("ball_return_s", machine.ball_return_s),
         ("ball_lift_s", machine.ball_lift_s),
     ];

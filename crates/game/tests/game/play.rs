@@ -1,7 +1,7 @@
 //! Whole throws through inputs alone, in the real room with the real physics.
 
 use crate::support::{Player, Swing, conditions};
-use game::{Button, EndReason, EventKind, Model, Phase, ReleaseSource, Roll};
+use game::{Button, EndReason, EventKind, Game, Model, Phase, ReleaseSource, Roll};
 use glam::DVec3;
 
 /// What the last throw felled, and why it ended.
@@ -274,4 +274,24 @@ fn practice_in_the_lobby_is_not_scored() {
             .all(|button| rolls(&player, *button).is_empty())
     );
     assert_eq!(player.game.standing().len(), 10);
+}
+
+#[test]
+fn pins_in_the_pit_are_taken_away() {
+    // Nothing may come to rest, so that the throw goes on long enough to look into the pit.
+    let mut player = Player::new(conditions(&["rules.still_for_s=10.0"]), 1);
+    player.key(Button::Red);
+    player.take_ball();
+    player.swing(0.0, 0.7, Swing::straight());
+    let in_pit = |game: &Game| {
+        let seen = game.visible().into_iter();
+        let pins = seen.filter(|seen| matches!(seen.model, Model::Pin(_)));
+        pins.filter(|pin| pin.pose.position.z < -19.3 && pin.pose.position.y < 0.0)
+            .count()
+    };
+    player.wait_until("a pin in the pit", |game| in_pit(game) > 0);
+    player.wait(6.0);
+    assert_eq!(player.game.phase(), Phase::Rolling);
+    assert_eq!(in_pit(&player.game), 0);
+    assert!(player.game.standing().len() < 10);
 }
