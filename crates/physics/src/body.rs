@@ -100,6 +100,10 @@ pub struct Body {
     pub(crate) still_steps: u32,
     /// Number of touching contacts.
     pub(crate) contacts: u32,
+    /// Whether it was put where it is since the last step, and may overlap something without moving.
+    pub(crate) fresh: bool,
+    /// Whether it stands perfectly still in this step, on its base alone.
+    pub(crate) rests: bool,
 }
 
 impl Body {
@@ -127,6 +131,8 @@ impl Body {
             last_finite: def.pose,
             still_steps: 0,
             contacts: 0,
+            rests: false,
+            fresh: true,
         };
         body.set_velocity(def.linear_velocity, def.angular_velocity);
         body
@@ -238,7 +244,7 @@ impl Body {
 
     /// Whether nothing about it changes in this step.
     pub(crate) fn is_still(&self) -> bool {
-        self.reach == 0.0
+        self.reach == 0.0 && !self.fresh
     }
 
     pub(crate) fn set_velocity(&mut self, linear: DVec3, angular: DVec3) {

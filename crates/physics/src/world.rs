@@ -151,7 +151,7 @@ impl World {
                 self.bodies.len() - 1
             }
         };
-        self.pairs.forget(slot, self.bodies.len());
+        self.renew(slot);
         BodyId {
             slot: slot as u32,
             generation: self.generations[slot].0,
@@ -170,7 +170,7 @@ impl World {
         body.collides = false;
         body.motion = Motion::Fixed;
         body.halt();
-        self.pairs.forget(slot, self.bodies.len());
+        self.renew(slot);
     }
 
     /// Whether the body is still in the world.
@@ -206,7 +206,7 @@ impl World {
         let linear = body.linear;
         body.set_velocity(linear, angular);
         body.frozen = !body.is_finite();
-        self.pairs.forget(slot, self.bodies.len());
+        self.renew(slot);
     }
 
     /// Sets velocities [m/s] and [rad/s], world frame; wakes the body.
@@ -239,7 +239,7 @@ impl World {
         let slot = self.slot(id);
         self.disturb(slot);
         self.bodies[slot].compound = compound;
-        self.pairs.forget(slot, self.bodies.len());
+        self.renew(slot);
     }
 
     /// Whether the body takes part in collisions; one that does not passes through everything.
@@ -247,7 +247,7 @@ impl World {
         let slot = self.slot(id);
         self.disturb(slot);
         self.bodies[slot].collides = collides;
-        self.pairs.forget(slot, self.bodies.len());
+        self.renew(slot);
     }
 
     /// Tells a driven body where to be at the end of the next step; its velocity follows from the difference.
@@ -309,6 +309,12 @@ impl World {
     pub(crate) fn slot(&self, id: BodyId) -> usize {
         assert!(self.contains(id), "body {id:?} was removed from this world");
         id.slot as usize
+    }
+
+    /// Forgets what was known about a body that is no longer what or where it was.
+    fn renew(&mut self, slot: usize) {
+        self.bodies[slot].fresh = true;
+        self.pairs.forget(slot, self.bodies.len());
     }
 
     /// Wakes a body and all that lean on it.

@@ -2,7 +2,7 @@
 
 mod support;
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use physics::query::{Limits, Separation, separation};
 use physics::{Pose, Shape};
 use support::Random;
@@ -220,4 +220,183 @@ fn overlap_is_never_overestimated_and_rarely_missed() {
         missed * 50 < cases,
         "{missed} of {cases} deep overlaps not the shallowest"
     );
+}
+
+#[test]
+fn swapping_the_shapes_flips_the_answer_and_moving_both_moves_it() {
+    let mut random = Random(3);
+    for i in 0..7 {
+        for j in 0..7 {
+            let (a, b) = pair(&mut random, i, j, 0.01);
+            let here = answer(a, b);
+            let back = answer(b, a);
+            assert!((here.gap - back.gap).abs() < 1e-12, "{a:?} {b:?}");
+            assert!((here.normal + back.normal).length() < 1e-5, "{a:?} {b:?}");
+            let away = Pose::new(random.vector() * 100.0, random.rotation());
+            let moved = answer((a.0, away * a.1), (b.0, away * b.1));
+            assert!((here.gap - moved.gap).abs() < 1e-11, "{a:?} {b:?}");
+            assert!((away.transform_vector(here.normal) - moved.normal).length() < 1e-5);
+            // The closest points are as far apart as the gap says, and along the normal.
+            let d = here.point_b - here.point_a;
+            assert!(
+                (d - here.normal * here.gap).length() < 1e-6,
+                "{a:?} {b:?}: {d}"
+            );
+        }
+    }
+}
+
+#[test]
+fn coincident_centres_give_a_valid_direction_and_the_same_every_time() {
+    let mut random = Random(11);
+    for (i, a) in kinds(&mut random).into_iter().enumerate() {
+        for (j, b) in kinds(&mut random).into_iter().enumerate() {
+            for offset in [0.0, 1e-30, 1e-9] {
+                let at = Pose::from_position(DVec3::new(offset, 0.0, 0.0));
+                let found = answer((a, Pose::IDENTITY), (b, at));
+                assert!((found.normal.length() - 1.0).abs() < 1e-12, "{a:?} {b:?}");
+                assert!(found.gap < 0.0 && found.gap.is_finite());
+                assert_eq!(found, answer((a, Pose::IDENTITY), (b, at)), "{i} {j}");
+            }
+        }
+    }
+    let one = Known::Ellipsoid(DVec3::new(0.5, 0.3, 0.7));
+    let depth = answer((one, Pose::IDENTITY), (one, Pose::IDENTITY)).gap;
+    assert!(
+        (depth + 0.6).abs() < 1e-9,
+        "the shallowest way out is twice the smallest semi-axis: {depth}"
+    );
+}
+
+#[test]
+fn a_larger_budget_never_gives_a_worse_bound_and_says_when_it_ended_the_search() {
+    let mut random = Random(17);
+    let mut capped = 0;
+    for _ in 0..200 {
+        let (a, b) = pair(&mut random, 1, 1, 0.05);
+        let mut last = f64::NEG_INFINITY;
+        for iteration_cap in [1, 2, 3, 5, 10, 20] {
+            let limits = Limits {
+                iteration_cap,
+                ..Limits::default()
+            };
+            let found = separation((&a.0.shape(), &a.1), (&b.0.shape(), &b.1), None, limits);
+            assert!(
+                found.gap >= last - 1e-15,
+                "cap {iteration_cap}: {} after {last}",
+                found.gap
+            );
+            assert!(found.iterations <= iteration_cap);
+            capped += i32::from(found.capped);
+            last = found.gap;
+        }
+    }
+    assert!(
+        capped > 100,
+        "one or two iterations are not enough for most pairs: {capped}"
+    );
+}
+
+#[test]
+fn apart_is_enough_stops_at_the_first_separating_normal() {
+    let (a, b) = (
+        Known::Ellipsoid(DVec3::new(0.5, 0.3, 0.7)),
+        Known::Frustum(0.3, 0.1, 0.5),
+    );
+    let at = Pose::new(DVec3::new(2.0, 0.7, -0.4), DQuat::from_rotation_x(0.4));
+    let limits = Limits {
+        enough: 0.0,
+        ..Limits::default()
+    };
+    let found = separation(
+        (&a.shape(), &Pose::IDENTITY),
+        (&b.shape(), &at),
+        None,
+        limits,
+    );
+    assert!(found.gap > 0.0 && found.iterations == 0);
+}
+
+#[test]
+fn flat_faces_and_edges_meet_their_closed_forms() {
+    let boxes = Known::Cuboid(DVec3::new(1.0, 0.5, 2.0));
+    let cylinder = Known::Frustum(0.5, 0.5, 1.0);
+    let cone = Known::Frustum(0.5, 0.0, 1.0);
+    let upside_down = DQuat::from_rotation_x(std::f64::consts::PI);
+    let lying = DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2);
+    let at = |x, y, z, q| Pose::new(DVec3::new(x, y, z), q);
+    let id = DQuat::IDENTITY;
+    for gap in [0.02, 1e-6, 0.0, -1e-6, -0.02] {
+        let cases = [
+            (
+                "cylinder on a box",
+                boxes,
+                cylinder,
+                at(0.2, 1.5 + gap, 0.3, id),
+                DVec3::Y,
+            ),
+            (
+                "half over the edge",
+                boxes,
+                cylinder,
+                at(1.2, 1.5 + gap, 0.3, id),
+                DVec3::Y,
+            ),
+            (
+                "coaxial cylinders",
+                cylinder,
+                cylinder,
+                at(0.0, 2.0 + gap, 0.0, id),
+                DVec3::Y,
+            ),
+            (
+                "side by side",
+                cylinder,
+                cylinder,
+                at(1.0 + gap, 0.3, 0.0, id),
+                DVec3::X,
+            ),
+            (
+                "crossed",
+                cylinder,
+                cylinder,
+                at(1.0 + gap, 0.0, 0.0, lying),
+                DVec3::X,
+            ),
+            (
+                "lying on a box",
+                boxes,
+                cylinder,
+                at(0.0, 1.0 + gap, 0.0, lying),
+                DVec3::Y,
+            ),
+            (
+                "apex on a box",
+                boxes,
+                cone,
+                at(0.1, 1.5 + gap, 0.2, upside_down),
+                DVec3::Y,
+            ),
+            (
+                "box on box",
+                boxes,
+                boxes,
+                at(0.3, 1.0 + gap, 0.4, id),
+                DVec3::Y,
+            ),
+        ];
+        for (name, a, b, pose, normal) in cases {
+            let found = answer((a, Pose::IDENTITY), (b, pose));
+            assert!(
+                (found.gap - gap).abs() < 1e-12,
+                "{name}: {} instead of {gap}",
+                found.gap
+            );
+            assert!(
+                (found.normal - normal).length() < 1e-6,
+                "{name}: {}",
+                found.normal
+            );
+        }
+    }
 }

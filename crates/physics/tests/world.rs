@@ -142,6 +142,59 @@ fn a_body_taken_away_wakes_what_it_carried() {
 }
 
 #[test]
+fn what_slept_on_a_struck_body_wakes() {
+    let m = material(0.7, 0.7);
+    let mut world = World::new(Settings::default()).unwrap();
+    world.add(block(
+        m,
+        DVec3::new(-5.0, -1.0, -5.0),
+        DVec3::new(5.0, 0.0, 5.0),
+    ));
+    // A board of its own under a ball: struck away, it must not leave the ball hanging.
+    let mut def = block(m, DVec3::new(-0.2, 0.0, -0.2), DVec3::new(0.2, 0.2, 0.2));
+    def.motion = Motion::Driven;
+    let board = world.add(def);
+    let id = world.add(ball(m, DVec3::new(0.0, 0.2 + BALL_RADIUS, 0.0)));
+    for _ in 0..720 {
+        world.step();
+    }
+    assert!(world.body(id).is_asleep());
+    let away = Pose::from_position(DVec3::new(0.0, 0.1 - 0.01, 0.0));
+    world.drive_to(board, away);
+    for _ in 0..720 {
+        world.step();
+    }
+    let height = world.body(id).pose().position.y;
+    assert!(
+        (height - 0.19 - BALL_RADIUS).abs() < 1e-5,
+        "ball at {height}"
+    );
+}
+
+#[test]
+fn a_hand_that_appears_inside_a_pin_pushes_it_out_gently() {
+    let m = material(0.7, 0.7);
+    let mut world = World::new(Settings::default()).unwrap();
+    world.add(block(
+        m,
+        DVec3::new(-5.0, -1.0, -5.0),
+        DVec3::new(5.0, 0.0, 5.0),
+    ));
+    let id = world.add(pin(&composite_pin(), m, DVec3::ZERO));
+    let hand = world.add(hand(m, DVec3::new(2.0, 0.1, 0.0)));
+    world.step();
+    world.set_pose(hand, Pose::from_position(DVec3::new(0.03, 0.1, 0.0)));
+    let mut fastest: f64 = 0.0;
+    for _ in 0..720 {
+        world.step();
+        fastest = fastest.max(world.body(id).linear_velocity().length());
+    }
+    let gone = world.body(id).pose().position - world.body(hand).pose().position;
+    assert!(gone.length() > 0.1, "still inside: {gone}");
+    assert!(fastest < 1.5, "thrown at {fastest} m/s");
+}
+
+#[test]
 fn ghosts_touch_nothing() {
     let m = material(0.7, 0.7);
     let (mut world, ids) = alley(Settings::default(), &composite_pin(), m);

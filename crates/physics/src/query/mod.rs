@@ -177,23 +177,48 @@ pub(crate) fn separation_placed(
         }
     }
     if best.gap <= 0.0 && start.is_none() {
-        let extra = [
-            a.rotation.y_axis,
-            b.rotation.y_axis,
-            a.rotation.x_axis,
-            a.rotation.z_axis,
-        ];
-        for n in extra.into_iter().flat_map(|n| [n, -n]) {
-            let other = ascent::ascend(a, b, n, limits);
-            if other.gap > best.gap + 1e-12 {
-                best = Separation {
-                    iterations: best.iterations + other.iterations,
-                    ..other
-                };
-            }
-        }
+        best = from_other_starts(a, b, best, limits);
     }
     best
+}
+
+/// Searches an overlap again from the shapes' axes, the most promising first, with what is left of the budget.
+fn from_other_starts(a: &Placed, b: &Placed, first: Separation, limits: Limits) -> Separation {
+    let (ra, rb) = (&a.rotation, &b.rotation);
+    let axes = [ra.y_axis, rb.y_axis, ra.x_axis, ra.z_axis];
+    let mut starts = [(0.0, DVec3::ZERO); 8];
+    for (start, n) in starts
+        .iter_mut()
+        .zip(axes.into_iter().flat_map(|n| [n, -n]))
+    {
+        *start = (gap_along(a, b, n), n);
+    }
+    starts.sort_by(|x, y| y.0.total_cmp(&x.0));
+    let mut best = first;
+    let mut used = first.iterations;
+    for (_, n) in starts {
+        let iteration_cap = limits.iteration_cap.saturating_sub(used);
+        if iteration_cap == 0 {
+            break;
+        }
+        let other = ascent::ascend(
+            a,
+            b,
+            n,
+            Limits {
+                iteration_cap,
+                ..limits
+            },
+        );
+        used += other.iterations;
+        if other.gap > best.gap + 1e-12 {
+            best = other;
+        }
+    }
+    Separation {
+        iterations: used,
+        ..best
+    }
 }
 
 /// Where the search starts without a known normal: the line of centres.

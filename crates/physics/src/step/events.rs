@@ -187,7 +187,11 @@ impl World {
             }
             let separating = -touch.normal.dot(touch.slip(&self.bodies));
             let lasts = separating < leaving && touch.gap < RELEASE;
-            self.pairs.set_touching(touch.key, lasts);
+            if lasts {
+                self.pairs.set_touching(touch.key, true);
+            } else {
+                self.part(touch.key);
+            }
         }
     }
 

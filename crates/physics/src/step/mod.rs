@@ -9,6 +9,9 @@ mod sleep;
 mod solve;
 mod touch;
 
+use glam::DVec3;
+
+use crate::body::{Body, Motion};
 use crate::world::World;
 
 /// Distance at which two bodies count as in contact [m].
@@ -23,10 +26,14 @@ impl World {
     pub fn step(&mut self) {
         let dt = self.dt();
         self.impacts.clear();
+        self.steps += 1;
+        if self.is_quiet() {
+            return;
+        }
         self.aim_driven(dt);
         for body in &mut self.bodies {
             body.clock = 0.0;
-            body.acceleration = glam::DVec3::ZERO;
+            body.acceleration = DVec3::ZERO;
         }
         self.wake_driven_neighbours();
         self.rest(dt);
@@ -34,12 +41,23 @@ impl World {
         for body in &mut self.bodies {
             body.advance(dt, dt);
             body.straighten();
+            body.fresh = false;
         }
         self.freeze_broken();
         if self.settings.sleeping {
             self.fall_asleep(dt);
         }
-        self.steps += 1;
+    }
+
+    /// Whether nothing moves and nobody is told to: a step then only counts.
+    fn is_quiet(&self) -> bool {
+        let idle = |body: &Body| match body.motion {
+            Motion::Fixed => true,
+            Motion::Driven => body.linear == DVec3::ZERO && body.turning == DVec3::ZERO,
+            Motion::Dynamic => !body.is_active(),
+        };
+        let idle = |body: &Body| !body.fresh && idle(body);
+        self.targets.iter().all(Option::is_none) && self.bodies.iter().all(idle)
     }
 
     /// Approach speed below which a contact is inelastic [m/s]: what gravity adds in 1/360 s.

@@ -20,6 +20,8 @@ use crate::world::World;
 const SEARCHES: usize = 40;
 /// A dip between two times that is no deeper than this is not looked for [m].
 const DIP: f64 = 2e-6;
+/// Bodies that overlap and part slower than this are in contact [m/s].
+const PARTING: f64 = 5e-3;
 /// Slower approach than this is none [m/s].
 const APPROACH: f64 = 1e-9;
 
@@ -138,7 +140,7 @@ impl World {
                 }
                 if gap <= CONTACT && !known.touching {
                     let point = (found.point_a + found.point_b) * 0.5;
-                    if closing(body_a, body_b, time, point, normal) {
+                    if closing(body_a, body_b, time, point, normal, gap) {
                         return Found {
                             time: Some(time),
                             normal,
@@ -211,7 +213,7 @@ impl World {
             (normal, gap, searched) = (found.normal, found.gap, true);
             if gap <= CONTACT {
                 let point = (found.point_a + found.point_b) * 0.5;
-                if known.touching || closing(body_a, body_b, time, point, normal) {
+                if known.touching || closing(body_a, body_b, time, point, normal, gap) {
                     return Found {
                         time: Some(time),
                         normal,
@@ -293,8 +295,8 @@ fn part_gap(a: &Placed, part_a: &Part, b: &Placed, part_b: &Part) -> f64 {
     }
 }
 
-/// Whether the bodies approach along `normal` at a point at time `t`, or begin to.
-fn closing(a: &Body, b: &Body, t: f64, point: DVec3, normal: DVec3) -> bool {
+/// Whether the bodies approach along `normal` at a point at time `t`, or begin to, or overlap and do not part.
+fn closing(a: &Body, b: &Body, t: f64, point: DVec3, normal: DVec3, gap: f64) -> bool {
     let velocity = |body: &Body| {
         let pose = body.pose_at(t);
         let linear =
@@ -302,9 +304,10 @@ fn closing(a: &Body, b: &Body, t: f64, point: DVec3, normal: DVec3) -> bool {
         linear + body.angular_velocity().cross(point - pose.position)
     };
     let speed = normal.dot(velocity(a) - velocity(b));
+    let bend = a.acceleration + a.bend.0 - b.acceleration - b.bend.0;
     speed > APPROACH
-        || (speed > -1e3 * APPROACH
-            && normal.dot(a.acceleration + a.bend.0 - b.acceleration - b.bend.0) > 0.0)
+        || (speed > -1e3 * APPROACH && normal.dot(bend) > 0.0)
+        || (gap < -SINK && speed > -PARTING)
 }
 
 /// Latest time found before the gap `at` falls to zero between `low` (apart) and `high` (not), by regula falsi.

@@ -1,5 +1,6 @@
 //! Rest: bodies that stopped are skipped until something touches them.
 
+use super::pairs::Key;
 use crate::body::Motion;
 use crate::world::World;
 
@@ -11,10 +12,17 @@ const QUIET_SPEED: f64 = 1e-4;
 impl World {
     pub(crate) fn wake(&mut self, slot: usize) {
         let body = &mut self.bodies[slot];
-        if body.asleep {
-            body.asleep = false;
-        }
+        body.asleep = false;
         body.still_steps = 0;
+    }
+
+    /// Ends a lasting contact; what slept on it may fall now.
+    pub(crate) fn part(&mut self, key: Key) {
+        if self.pairs.part(key).touching {
+            self.pairs.set_touching(key, false);
+            self.wake(key.a as usize);
+            self.wake(key.b as usize);
+        }
     }
 
     /// A driven body that moves wakes what it touches.

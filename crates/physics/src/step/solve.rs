@@ -91,7 +91,11 @@ impl Row {
             pressed: 0.0,
             given: zero,
         };
-        row.prepare(all);
+        let rests_on_ground =
+            touch.base.is_some() && !(all[movers.0].is_moved() && all[movers.1].is_moved());
+        if !rests_on_ground {
+            row.prepare(all);
+        }
         row
     }
 

@@ -60,6 +60,11 @@ impl Base {
         point
     }
 
+    /// The point of the base's plane under `point`.
+    pub fn below(&self, point: DVec3) -> DVec3 {
+        point - self.up * self.up.dot(point - self.centre)
+    }
+
     /// Whether `point` lies in the patch.
     pub fn holds(&self, point: DVec3) -> bool {
         (self.clamp(point) - point).length_squared() < 1e-24
