@@ -177,6 +177,18 @@ fn extent(width: u32, height: u32) -> wgpu::Extent3d {
 mod tests {
     use super::*;
 
+    /// Pixels cannot tell on every driver: lavapipe's anisotropic filter averages a whole footprint even without.
+    #[test]
+    fn texture_has_smaller_copies_down_to_one_pixel() {
+        let gpu = Gpu::new(crate::BackendChoice::Noop).expect("the test backend needs no driver");
+        let (layout, sampler) = (bind_group_layout(&gpu.device), sampler(&gpu));
+        for ((width, height), levels) in [((256, 100), 9), ((1, 1), 1), ((3, 5), 3)] {
+            let image = RgbaImage::new(width, height);
+            let texture = Texture::new(&gpu, &layout, &sampler, &image).expect("good");
+            assert_eq!(texture.texture.mip_level_count(), levels);
+        }
+    }
+
     #[test]
     fn load_image_names_the_file() {
         let error = load_image(Path::new("no/such.png")).expect_err("there is none");
