@@ -64,6 +64,38 @@ fn a_rack_falls_asleep_and_wakes_at_a_touch() {
 }
 
 #[test]
+fn on_a_slope_a_pin_tips_where_its_centre_leaves_its_base() {
+    let m = material(0.7, 1.0);
+    let tip = (BASE_RADIUS / PIN_CG).atan();
+    for (shape, direction) in [(composite_pin(), 0.3f64), (ellipsoid_pin(), 2.0)] {
+        for (beyond, falls) in [(-0.1f64, false), (0.1, true)] {
+            let angle = tip + beyond.to_radians();
+            let across = DVec3::new(direction.cos(), 0.0, direction.sin());
+            let gravity = (across * angle.sin() - DVec3::Y * angle.cos()) * 9.81;
+            let mut world = World::new(Settings {
+                gravity,
+                ..Settings::default()
+            })
+            .unwrap();
+            world.add(block(
+                m,
+                DVec3::new(-5.0, -1.0, -5.0),
+                DVec3::new(5.0, 0.0, 5.0),
+            ));
+            let id = world.add(pin(&shape, m, DVec3::ZERO));
+            for _ in 0..720 * 3 {
+                world.step();
+            }
+            assert_eq!(
+                tilt(&world, id) > 30.0,
+                falls,
+                "{beyond} degrees beyond the tip angle"
+            );
+        }
+    }
+}
+
+#[test]
 fn a_leaning_pin_does_not_hang() {
     // Half a degree past its tip angle it starts with hardly any acceleration; sleep must not catch it.
     let m = material(0.7, 0.7);

@@ -17,7 +17,7 @@ use crate::world::World;
 /// Distance at which two bodies count as in contact [m].
 pub(crate) const CONTACT: f64 = 1e-7;
 /// A lasting contact may sink this far in a step before it is struck again [m].
-pub(crate) const SINK: f64 = 2e-5;
+pub(crate) const SINK: f64 = 1e-5;
 /// Gap beyond which a lasting contact is given up [m].
 pub(crate) const RELEASE: f64 = 1e-5;
 
