@@ -180,10 +180,11 @@ fn lamps() -> Vec<Lamp> {
         color: [strength, 0.95 * strength, 0.85 * strength],
         range_m: 6.0,
     };
+    // Well in front of the masking panel, which it would bleach from nearby.
     let over_pins = Lamp {
-        position: Vec3::new(0.0, 0.8, -17.5),
-        color: [0.9, 0.9, 0.86],
-        range_m: 4.0,
+        position: Vec3::new(0.0, 1.6, -16.2),
+        color: [1.3, 1.28, 1.2],
+        range_m: 5.0,
     };
     vec![lamp(2.5, 0.8), lamp(-4.0, 0.6), lamp(-10.0, 0.5), over_pins]
 }

@@ -35,18 +35,33 @@ enum Eyes {
 struct Moment {
     name: &'static str,
     shot: Option<usize>,
+    /// Shown this much later than it happened [s].
+    later: f64,
     eyes: Eyes,
+}
+
+impl Moment {
+    fn shot<'a>(&self, film: &'a Film) -> Option<&'a Shot> {
+        let happened = film.shots.get(self.shot?)?;
+        Some(&film.shots[film.nearest(happened.time + self.later)])
+    }
 }
 
 /// The moments that matter. Pins are three degrees wide from the foul line, too small for a tile,
 /// so that what happens to them is shown from beside the deck.
 fn moments(throw: &Throw) -> [Moment; 4] {
-    let moment = |name, shot, eyes| Moment { name, shot, eyes };
+    let moment = |name, shot, later, eyes| Moment {
+        name,
+        shot,
+        later,
+        eyes,
+    };
+    // At the release itself the ball is below what the eyes see.
     [
-        moment("grab", throw.grab, Eyes::Own),
-        moment("release", throw.release, Eyes::Own),
-        moment("first hit", throw.first_hit, Eyes::Spectator),
-        moment("settled", throw.settled, Eyes::Spectator),
+        moment("grab", throw.grab, 0.0, Eyes::Own),
+        moment("just released", throw.release, 0.2, Eyes::Own),
+        moment("first hit", throw.first_hit, 0.0, Eyes::Spectator),
+        moment("settled", throw.settled, 0.0, Eyes::Spectator),
     ]
 }
 
@@ -85,7 +100,7 @@ pub fn write(
         place(&mut sheet, &painter.caption(&heading(throw))?, left, top);
         for (column, moment) in moments(throw).into_iter().enumerate() {
             let x = left + column as u32 * tile_width;
-            let Some(shot) = moment.shot.and_then(|index| film.shots.get(index)) else {
+            let Some(shot) = moment.shot(film) else {
                 place(
                     &mut sheet,
                     &painter.caption(&format!("no {}", moment.name))?,

@@ -3,8 +3,9 @@
 use game::{Button, EventKind, Game, Model, Visible};
 use physics::Pose;
 
-/// Snapshots per second: a third of the scripted rate, and smooth enough for a falling pin.
-pub const SHOTS_PER_SECOND: u32 = 30;
+/// Snapshots per second: a fifth of the scripted rate. Every one of them may become a picture of the
+/// video, which has to be drawn without a graphics card too.
+pub const SHOTS_PER_SECOND: u32 = 18;
 
 /// Everything that moves, at one instant.
 #[derive(Debug, Clone)]
@@ -51,6 +52,23 @@ pub struct Film {
     pub throws: Vec<Throw>,
     /// Pins on the score sheet so far.
     pub total: u32,
+}
+
+impl Film {
+    /// The snapshot nearest to `time` [s]; the film must have one.
+    pub fn nearest(&self, time: f64) -> usize {
+        let after = self
+            .shots
+            .partition_point(|shot| shot.time < time)
+            .min(self.shots.len() - 1);
+        let before = after.saturating_sub(1);
+        let distance = |index: usize| (self.shots[index].time - time).abs();
+        if distance(before) < distance(after) {
+            before
+        } else {
+            after
+        }
+    }
 }
 
 /// Films games as they are played.

@@ -112,25 +112,11 @@ fn frames(film: &Film) -> Vec<(Clip, usize)> {
         let count = (clip.duration() * f64::from(SHOTS_PER_SECOND)).floor() as usize;
         for number in 0..count {
             let time = clip.from + number as f64 / f64::from(SHOTS_PER_SECOND);
-            frames.push((clip, nearest(film, time)));
+            frames.push((clip, film.nearest(time)));
         }
     }
     frames.truncate((LONGEST * f64::from(SHOTS_PER_SECOND)) as usize);
     frames
-}
-
-fn nearest(film: &Film, time: f64) -> usize {
-    let after = film
-        .shots
-        .partition_point(|shot| shot.time < time)
-        .min(film.shots.len() - 1);
-    let before = after.saturating_sub(1);
-    let distance = |index: usize| (film.shots[index].time - time).abs();
-    if distance(before) < distance(after) {
-        before
-    } else {
-        after
-    }
 }
 
 /// The clips of the best throws that fit into the video, in the order of play.

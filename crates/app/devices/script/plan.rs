@@ -11,6 +11,8 @@ use crate::random::SplitMix64;
 /// From the middle of the hand to the ball's surface when it closes [m]: beyond the sphere that
 /// pushes what it touches, within the hand's reach.
 const GRAB_GAP: f64 = 0.06;
+/// Where the arrows on the lane are [m].
+const ARROWS_Z: f64 = -4.3;
 /// How far the body stands from what it reaches for [m].
 const REACH_DISTANCE: f64 = 0.55;
 /// How far the knees bend for a reach and for a throw [m].
@@ -113,12 +115,14 @@ pub fn deliver(
         Action::Look(DVec3::new(target.x, 0.0, 0.5 * target.y)),
         Action::Walk(stand + DVec2::new(0.0, 0.1)),
         Action::Stand(stand, yaw),
-        Action::Look(DVec3::new(target.x, 0.2, target.y)),
+        // Bowlers look at the arrows, not at the pins.
+        Action::Look(DVec3::new(target.x, 0.0, ARROWS_Z)),
         Action::Wait(0.5),
         Action::Bend(BEND),
         Action::Reach(HandGoal::Body(ready.position, ready.rotation), 0.6),
         Action::Throw(Box::new(swing), release),
         Action::Wait(0.3),
+        Action::Look(DVec3::new(target.x, 0.2, target.y)),
         Action::Bend(0.0),
         Action::Reach(relaxed_hand(person), 0.8),
     ]
