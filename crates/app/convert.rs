@@ -29,6 +29,9 @@ const SCENERY: [(&str, Look); 12] = [
 /// Balls of the rack in their order; later ones begin again.
 const BALL_TEXTURES: [&str; 4] = ["ball_blue", "ball_green", "ball_orange", "ball_violet"];
 
+/// Vertical field of view of the spectator's eyes [rad].
+const SPECTATOR_FOV: f32 = 0.85;
+
 /// How a surface looks: linear colour and roughness, or a texture.
 #[derive(Debug, Clone, Copy)]
 enum Look {
@@ -315,9 +318,16 @@ fn right_eye(display: &DisplayConfig) -> Fov {
     }
 }
 
+/// A spectator's two eyes before the pin deck, left first; narrower than a headset's, for the pins' sake.
+pub fn spectator_eyes(headpin_z: f64, display: &DisplayConfig) -> [View; 2] {
+    let [left, right] = eyes(&spectator(headpin_z), display);
+    let fov = Fov::from_aspect(SPECTATOR_FOV, right.fov.aspect());
+    [View { fov, ..left }, View { fov, ..right }]
+}
+
 /// `world_from_head` of a spectator before the pin deck, who looks at the pins from above the lane.
 pub fn spectator(headpin_z: f64) -> Pose {
-    let position = DVec3::new(0.28, 0.72, headpin_z + 1.05);
+    let position = DVec3::new(0.25, 0.75, headpin_z + 1.3);
     let target = DVec3::new(0.0, 0.1, headpin_z - 0.4);
     let way = target - position;
     let yaw = libm::atan2(-way.x, -way.z);

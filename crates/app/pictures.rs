@@ -17,6 +17,9 @@ use self::film::{Film, Shot};
 use crate::convert::{self, Stock};
 use crate::output::OutputFolder;
 
+/// Lines of text painted into one image: well below the height that every driver holds.
+const LINES_AT_ONCE: usize = 100;
+
 /// Which pictures are made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Wanted {
@@ -89,15 +92,29 @@ impl Painter {
             .map_err(|_| anyhow::anyhow!("the renderer drew another number of eyes than two"))
     }
 
-    /// A line of text, `width` pixels long and `layout::TEXT` high or a little less.
-    fn caption(&mut self, text: &str) -> Result<RgbaImage> {
-        let block = TextBlock {
-            size_px: 13.0,
-            background: [0; 4],
-            padding_px: 2,
-            ..TextBlock::new(text)
-        };
-        Ok(self.text.block(&block)?)
+    /// Lines of text, each an image of its own.
+    ///
+    /// Painted together and cut apart, because painting takes long and the length of a text does not matter.
+    fn captions(&mut self, lines: &[String]) -> Result<Vec<RgbaImage>> {
+        let mut images = Vec::with_capacity(lines.len());
+        for lines in lines.chunks(LINES_AT_ONCE) {
+            let block = TextBlock {
+                size_px: 13.0,
+                background: [0; 4],
+                padding_px: 0,
+                ..TextBlock::new(lines.join("\n"))
+            };
+            let painted = self.text.block(&block)?;
+            let count = lines.len() as u32;
+            for line in 0..count {
+                let top = painted.height() * line / count;
+                let height = painted.height() / count;
+                images.push(
+                    image::imageops::crop_imm(&painted, 0, top, painted.width(), height).to_image(),
+                );
+            }
+        }
+        Ok(images)
     }
 
     /// The participant's eyes; a spectator's while the head is not tracked.
@@ -110,6 +127,6 @@ impl Painter {
 
     /// A pair of eyes before the pin deck, as far apart as the participant's.
     fn spectator_eyes(&self) -> [View; 2] {
-        convert::eyes(&convert::spectator(self.headpin_z), &self.display)
+        convert::spectator_eyes(self.headpin_z, &self.display)
     }
 }

@@ -21,6 +21,8 @@ const EYE_AREA: f32 = 160.0 * 160.0;
 const GAP: u32 = 6;
 /// Height of a line of text [pixels].
 const TEXT: u32 = 20;
+/// Texts of one delivery: its heading and its moments.
+const CAPTIONS: usize = 5;
 /// Deliveries beside each other.
 const ACROSS: u32 = 2;
 
@@ -44,6 +46,13 @@ impl Moment {
     fn shot<'a>(&self, film: &'a Film) -> Option<&'a Shot> {
         let happened = film.shots.get(self.shot?)?;
         Some(&film.shots[film.nearest(happened.time + self.later)])
+    }
+
+    fn caption(&self, film: &Film) -> String {
+        match self.shot(film) {
+            Some(shot) => format!("{}  {:.2} s", self.name, shot.time),
+            None => format!("no {}", self.name),
+        }
     }
 }
 
@@ -88,8 +97,15 @@ pub fn write(
         "{}: {} pins. Left eye, right eye. Grab and release through the participant's eyes, the rest from beside the pins.",
         film.button, film.total
     );
-    place(&mut sheet, &painter.caption(&title)?, GAP, GAP);
-    for (number, (throw, (line, block))) in film.throws.iter().zip(&lines).enumerate() {
+    let captions = painter.captions(&captions(film, title))?;
+    let (title, captions) = captions.split_first().expect("the title is the first");
+    place(&mut sheet, title, GAP, GAP);
+    let throws = film
+        .throws
+        .iter()
+        .zip(&lines)
+        .zip(captions.chunks_exact(CAPTIONS));
+    for (number, ((throw, (line, block)), captions)) in throws.enumerate() {
         progress(&format!(
             "{} contact sheet: delivery {} of {}",
             film.button,
@@ -97,20 +113,15 @@ pub fn write(
             film.throws.len()
         ));
         let (left, top) = (GAP + block * block_width, 2 * TEXT + line * line_height);
-        place(&mut sheet, &painter.caption(&heading(throw))?, left, top);
-        for (column, moment) in moments(throw).into_iter().enumerate() {
+        place(&mut sheet, &captions[0], left, top);
+        for (column, (moment, caption)) in moments(throw).iter().zip(&captions[1..]).enumerate() {
             let x = left + column as u32 * tile_width;
-            let Some(shot) = moment.shot(film) else {
-                place(
-                    &mut sheet,
-                    &painter.caption(&format!("no {}", moment.name))?,
-                    x,
-                    top + TEXT,
-                );
-                continue;
-            };
-            let tile = tile(painter, still, shot, &moment, size)?;
-            place(&mut sheet, &tile, x, top + TEXT);
+            if let Some(shot) = moment.shot(film) {
+                let [left_eye, right_eye] = tile(painter, still, shot, moment, size)?;
+                place(&mut sheet, &left_eye, x, top + TEXT);
+                place(&mut sheet, &right_eye, x + size.0, top + TEXT);
+            }
+            place(&mut sheet, caption, x, top + TEXT + size.1);
         }
     }
     let mut png = Cursor::new(Vec::new());
@@ -123,28 +134,29 @@ pub fn write(
     )
 }
 
+/// Both eyes of one moment.
 fn tile(
     painter: &mut Painter,
     still: &[Visible],
     shot: &Shot,
     moment: &Moment,
     size: (u32, u32),
-) -> Result<RgbaImage> {
+) -> Result<[RgbaImage; 2]> {
     let eyes = match moment.eyes {
         Eyes::Own => painter.own_eyes(shot),
         Eyes::Spectator => painter.spectator_eyes(),
     };
-    let [left, right] = painter.draw(still, shot, &eyes, size)?;
-    let mut tile = paper(2 * size.0, size.1 + TEXT);
-    place(&mut tile, &left, 0, 0);
-    place(&mut tile, &right, size.0, 0);
-    place(
-        &mut tile,
-        &painter.caption(&format!("{}  {:.2} s", moment.name, shot.time))?,
-        0,
-        size.1,
-    );
-    Ok(tile)
+    painter.draw(still, shot, &eyes, size)
+}
+
+/// The title, then for each delivery its heading and the captions of its moments.
+fn captions(film: &Film, title: String) -> Vec<String> {
+    let mut lines = vec![title];
+    for throw in &film.throws {
+        lines.push(heading(throw));
+        lines.extend(moments(throw).iter().map(|moment| moment.caption(film)));
+    }
+    lines
 }
 
 fn heading(throw: &Throw) -> String {

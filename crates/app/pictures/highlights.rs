@@ -58,10 +58,12 @@ pub fn write(
     let spectator = painter.spectator_eyes();
     let size = eye_size(EYE_AREA, spectator[0].fov.aspect());
     let draft = folder.draft(&format!("{}-highlights.avi", film.button.file_stem()))?;
-    let mut captions = Vec::new();
-    for throw in &film.throws {
-        captions.push(painter.caption(&caption(film, throw))?);
-    }
+    let lines: Vec<String> = film
+        .throws
+        .iter()
+        .map(|throw| caption(film, throw))
+        .collect();
+    let captions = painter.captions(&lines)?;
     let mut video =
         AviWriter::new(draft, 2 * size.0, size.1 + TEXT, SHOTS_PER_SECOND).context(FAILED)?;
     for (number, (clip, index)) in frames.iter().enumerate() {

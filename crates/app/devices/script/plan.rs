@@ -140,8 +140,9 @@ fn target(alley: &Observation, person: &ParticipantConfig) -> DVec2 {
     if standing.is_empty() || standing.iter().any(|pin| pin.distance(head_pin) < PIN_SPOT) {
         return head_pin + DVec2::X * person.target_x_m;
     }
-    // Without the head pin: the middle of what is left.
-    standing.iter().sum::<DVec2>() / standing.len() as f64
+    // Without the head pin: the foremost of what is left, which may take others with it.
+    let foremost = standing.iter().copied().max_by(|a, b| a.y.total_cmp(&b.y));
+    foremost.unwrap_or(head_pin)
 }
 
 /// A point on the way from `from` to `spot`, within reach of it.

@@ -1,0 +1,12 @@
+//! Tests of the whole product, one module each.
+
+/// What is refused, and with which sentence.
+mod bad_input;
+/// Pictures of hand-set states, both eyes, against references.
+mod golden;
+/// A recording of the real program: what is in it, and what a replay finds.
+mod recording;
+/// The release velocity comes out of the poses as it does out of measured velocities.
+mod release;
+/// Folders, and the real program.
+mod support;
