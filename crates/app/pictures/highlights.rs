@@ -15,7 +15,7 @@ use crate::output::OutputFolder;
 
 /// Pixels of one eye's picture: chosen so that two videos take under two minutes on two cores
 /// without a graphics card.
-const EYE_AREA: f32 = 320.0 * 320.0;
+const EYE_AREA: f32 = 272.0 * 272.0;
 /// Height of the line of text [pixels].
 const TEXT: u32 = 20;
 /// Longest video [s].
@@ -168,6 +168,7 @@ mod tests {
     use crate::pictures::film::Shot;
     use game::Button;
 
+    /// A throw every ten seconds.
     fn film(fallen: &[usize]) -> Film {
         let shot = |number: usize| Shot {
             time: number as f64 / 30.0,
@@ -197,7 +198,7 @@ mod tests {
     fn frames_never_last_longer_than_twenty_seconds() {
         let frames = frames(&film(&[5; 12]));
         assert!(
-            frames.len() <= 600 && frames.len() > 500,
+            frames.len() <= 300 && frames.len() > 250,
             "{}",
             frames.len()
         );
