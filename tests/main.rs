@@ -10,3 +10,5 @@ mod recording;
 mod release;
 /// Folders, and the real program.
 mod support;
+/// A person bowls in a real window.
+mod window;

@@ -1,5 +1,7 @@
 //! Devices: what bowls. Each yields one [`Input`] per displayed frame.
 
+pub mod desk;
+pub mod gamepad;
 pub mod script;
 
 use game::{Game, Input};

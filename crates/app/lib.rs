@@ -18,6 +18,7 @@ pub mod rehearsal;
 pub mod replay;
 pub mod root;
 pub mod session;
+pub mod window;
 
 use std::ffi::OsString;
 use std::process::ExitCode;

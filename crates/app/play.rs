@@ -17,6 +17,7 @@ use crate::output;
 use crate::pictures::{Painter, Wanted};
 use crate::rehearsal;
 use crate::session::{Session, Setup, Summary};
+use crate::window;
 
 /// Scene when none is asked for.
 const DEFAULT_SCENE: &str = "alley";
@@ -58,9 +59,7 @@ pub fn play(arguments: &PlayArguments, root: &Path) -> Result<()> {
     };
     match choice {
         Choice::ScriptOffscreen => offscreen(setup, root, wanted),
-        Choice::DeskWindow | Choice::ScriptWindow => {
-            bail!("this build opens no window yet: use --offscreen")
-        }
+        Choice::DeskWindow | Choice::ScriptWindow => window::run(setup, root, wanted, choice),
     }
 }
 

@@ -121,6 +121,14 @@ impl Session {
         Ok(())
     }
 
+    /// Hands everything recorded so far to the system, for who follows the journal while it grows.
+    ///
+    /// # Errors
+    /// As [`Session::frame`].
+    pub fn flush(&mut self) -> Result<()> {
+        self.journal.flush()
+    }
+
     /// The game, as the last frame left it.
     pub fn game(&self) -> &Game {
         &self.game

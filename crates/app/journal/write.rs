@@ -98,7 +98,11 @@ impl Journal {
         .with_context(|| self.failure())
     }
 
-    fn flush(&mut self) -> Result<()> {
+    /// Hands everything recorded so far to the system, where a crash of this program cannot touch it.
+    ///
+    /// # Errors
+    /// As [`Journal::input`].
+    pub fn flush(&mut self) -> Result<()> {
         self.file.flush().with_context(|| self.failure())
     }
 

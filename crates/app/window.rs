@@ -1,0 +1,288 @@
+//! `bowling play` in a window: a person at the desk, or the scripted participant to watch.
+//!
+//! The simulation follows the wall clock in the device's own frames, however fast the window is drawn; the journal sees no
+//! difference to a session without a window.
+
+mod keys;
+mod overlay;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result, anyhow};
+use glam::{DQuat, DVec3};
+use renderer::{BackendChoice, Fov, Renderer, RendererSettings, TextPainter, View, WindowTarget};
+use winit::application::ApplicationHandler;
+use winit::dpi::LogicalSize;
+use winit::event::WindowEvent;
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
+use winit::window::{Window, WindowId};
+
+use crate::choose::Choice;
+use crate::convert::{self, Stock};
+use crate::devices::Device;
+use crate::devices::desk::Desk;
+use crate::devices::gamepad::Gamepads;
+use crate::devices::script::{Script, Velocities};
+use crate::pictures::{Painter, Wanted};
+use crate::play::{self, Progress};
+use crate::session::{Session, Setup};
+use keys::{Command, Keys};
+use overlay::Overlay;
+
+/// Vertical field of view of the window [rad]: wide enough to see hand and pins at once.
+const WINDOW_FOV: f32 = 1.05;
+/// Longest time that one picture makes up for [s]: after a longer stall the alley goes on from where it was.
+const LONGEST_CATCH_UP_S: f64 = 0.25;
+/// Where the eyes are while the head is not tracked: behind the approach, at a standing person's height [m].
+const SPECTATOR: DVec3 = DVec3::new(0.0, 1.7, 5.0);
+
+/// Opens the window, plays until it is closed or the script is done, and leaves the recording in order.
+///
+/// # Errors
+/// One sentence when no window, driver or asset is there, or the recording cannot be written.
+pub fn run(setup: Setup, root: &Path, wanted: Wanted, choice: Choice) -> Result<()> {
+    let events = EventLoop::new().map_err(|_| {
+        anyhow!(
+            "no window can be opened: the display server does not answer; start from a desktop, or use --offscreen"
+        )
+    })?;
+    let config = setup.conditions.lobby.clone();
+    let mut shell = Shell {
+        root: root.to_owned(),
+        player: Player::new(&setup, choice),
+        frame_s: 1.0 / setup.rate_hz,
+        setup: Some(setup),
+        stage: None,
+        stop: play::interruption()?,
+        failure: None,
+    };
+    events
+        .run_app(&mut shell)
+        .context("the window system ended the session")?;
+    let Shell { stage, failure, .. } = shell;
+    let Some(stage) = stage else {
+        return Err(failure.unwrap_or_else(|| anyhow!("the window was closed before it opened")));
+    };
+    let Stage { session, .. } = stage;
+    if let Some(failure) = failure {
+        session.finish(None, wanted, &mut |_| ())?;
+        return Err(failure);
+    }
+    let mut painter = session
+        .has_throws()
+        .then(|| Painter::new(root, &config))
+        .transpose()?;
+    let mut progress = Progress::new();
+    let summary = session.finish(painter.as_mut(), wanted, &mut |text| progress.say(text))?;
+    progress.end();
+    play::report(&summary);
+    Ok(())
+}
+
+/// Who plays in the window.
+enum Player {
+    Desk(Box<Desk>, Gamepads),
+    Script(Box<Script>),
+}
+
+impl Player {
+    fn new(setup: &Setup, choice: Choice) -> Self {
+        let config = &setup.conditions.lobby;
+        if choice == Choice::ScriptWindow {
+            let script = Script::new(
+                config,
+                setup.seed,
+                Velocities::Measured,
+                &game::Button::BOTH,
+            );
+            return Self::Script(Box::new(script));
+        }
+        let steps = (config.physics.step_hz / setup.rate_hz).round() as u32;
+        let desk = Desk::new(config.participant.eye_height_m, steps, 1.0 / setup.rate_hz);
+        Self::Desk(Box::new(desk), Gamepads::open())
+    }
+
+    /// The device, told that `count` of its inputs are due.
+    fn due(&mut self, count: u32) -> &mut dyn Device {
+        match self {
+            Self::Desk(desk, pads) => {
+                let (pad, presses) = pads.poll();
+                desk.set_gamepad(pad);
+                presses.into_iter().for_each(|press| desk.handle(press));
+                desk.due(count);
+                desk.as_mut()
+            }
+            Self::Script(script) => script.as_mut(),
+        }
+    }
+}
+
+/// Everything that exists once the window does.
+struct Stage {
+    target: WindowTarget,
+    renderer: Renderer,
+    stock: Stock,
+    overlay: Overlay,
+    keys: Keys,
+    session: Session,
+    /// Up to when the alley has been simulated.
+    simulated: Instant,
+}
+
+/// The window's application: opens the stage when the system is ready, and then runs it.
+struct Shell {
+    root: PathBuf,
+    player: Player,
+    frame_s: f64,
+    setup: Option<Setup>,
+    stage: Option<Stage>,
+    stop: Arc<std::sync::atomic::AtomicBool>,
+    failure: Option<anyhow::Error>,
+}
+
+impl Shell {
+    fn open(&mut self, events: &ActiveEventLoop) -> Result<()> {
+        let Some(setup) = self.setup.take() else {
+            return Ok(());
+        };
+        let attributes = Window::default_attributes()
+            .with_title("Bowling")
+            .with_inner_size(LogicalSize::new(960, 600));
+        let window = events
+            .create_window(attributes)
+            .context("cannot open a window; use --offscreen")?;
+        let (gpu, target) = WindowTarget::new(Arc::new(window), BackendChoice::Auto)
+            .context("cannot draw into the window")?;
+        let mut renderer =
+            Renderer::new(&gpu, RendererSettings::default()).context("cannot draw")?;
+        let stock = Stock::load(&mut renderer, &self.root)?;
+        let overlay = Overlay::new(TextPainter::new(&gpu));
+        // Last: nothing is written before everything else works.
+        let session = Session::start(setup)?;
+        println!(
+            "Recording into {}. F1 shows the keys, Esc ends and saves.",
+            session.folder().display()
+        );
+        let simulated = Instant::now();
+        self.stage = Some(Stage {
+            target,
+            renderer,
+            stock,
+            overlay,
+            keys: Keys::default(),
+            session,
+            simulated,
+        });
+        Ok(())
+    }
+
+    /// Simulates what is due and draws the picture.
+    fn frame(&mut self, events: &ActiveEventLoop) -> Result<()> {
+        let Some(stage) = &mut self.stage else {
+            return Ok(());
+        };
+        let late = stage.simulated.elapsed().as_secs_f64();
+        if late > LONGEST_CATCH_UP_S {
+            stage.simulated += Duration::from_secs_f64(late - LONGEST_CATCH_UP_S);
+        }
+        let count = (late.min(LONGEST_CATCH_UP_S) / self.frame_s) as u32;
+        let device = self.player.due(count);
+        for _ in 0..count {
+            let input = device.next(stage.session.game());
+            stage.session.frame(input)?;
+            stage.overlay.notice(stage.session.game());
+        }
+        stage.session.flush()?;
+        stage.simulated += Duration::from_secs_f64(f64::from(count) * self.frame_s);
+        if device.is_done() || self.stop.load(std::sync::atomic::Ordering::Relaxed) {
+            events.exit();
+        }
+        stage.draw()
+    }
+
+    fn command(&mut self, command: Command, events: &ActiveEventLoop) {
+        match command {
+            Command::End => events.exit(),
+            Command::Help => {
+                if let Some(stage) = &mut self.stage {
+                    stage.overlay.toggle_help();
+                }
+            }
+            Command::Desk(event) => {
+                if let Player::Desk(desk, _) = &mut self.player {
+                    desk.handle(event);
+                }
+            }
+            Command::LetGo => {
+                if let Player::Desk(desk, _) = &mut self.player {
+                    desk.let_go();
+                }
+            }
+        }
+    }
+
+    /// Keeps the first failure for the end of the loop, which winit cannot carry out itself.
+    fn keep(&mut self, result: Result<()>, events: &ActiveEventLoop) {
+        if let Err(error) = result {
+            self.failure.get_or_insert(error);
+            events.exit();
+        }
+    }
+}
+
+impl Stage {
+    fn draw(&mut self) -> Result<()> {
+        let game = self.session.game();
+        let visible = game.visible();
+        let scene = convert::scene(visible.iter(), &self.stock, game.held().is_some());
+        let (position, rotation) = game
+            .head_pose_world()
+            .map_or((SPECTATOR, DQuat::IDENTITY), |head| {
+                (head.position, head.rotation)
+            });
+        let fov = Fov::from_aspect(WINDOW_FOV, self.target.view_aspect(1));
+        let view = View {
+            position: position.as_vec3(),
+            rotation: rotation.as_quat(),
+            fov,
+        };
+        self.overlay.show(game, &mut self.target)?;
+        self.target
+            .draw(&mut self.renderer, &scene, &[view])
+            .context("cannot draw into the window")?;
+        Ok(())
+    }
+}
+
+impl ApplicationHandler for Shell {
+    fn resumed(&mut self, events: &ActiveEventLoop) {
+        // The picture sets the pace: vertical synchronisation where there is a screen, the processor elsewhere.
+        events.set_control_flow(ControlFlow::Poll);
+        let opened = self.open(events);
+        self.keep(opened, events);
+    }
+
+    fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        if matches!(event, WindowEvent::RedrawRequested) {
+            let drawn = self.frame(events);
+            self.keep(drawn, events);
+            return;
+        }
+        let Some(stage) = &mut self.stage else { return };
+        if let WindowEvent::Resized(size) = event {
+            stage.target.resize(size.width, size.height);
+        }
+        let size = stage.target.window().inner_size();
+        if let Some(command) = stage.keys.command(&event, size) {
+            self.command(command, events);
+        }
+    }
+
+    fn about_to_wait(&mut self, _: &ActiveEventLoop) {
+        if let Some(stage) = &self.stage {
+            stage.target.window().request_redraw();
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! What keys and mouse mean: the one table that the help, the README and this program agree on.
+
+use glam::DVec2;
+use winit::dpi::PhysicalSize;
+use winit::event::{ElementState, MouseButton, MouseScrollDelta, WindowEvent};
+use winit::keyboard::{KeyCode, PhysicalKey};
+
+use crate::devices::desk::{DeskEvent, Hold};
+
+/// The keys, as the help shows them.
+pub const HELP: &str = "\
+mouse            the hand: up and down swings the arm
+wheel            arm's length
+left button      hold to grab, let go to release
+right drag, A D  look around
+W S              walk, walk back
+1 2              the Red and the Blue button
+F1               this help
+Esc              end and save
+
+To bowl: press 1. Turn right to the balls, reach, hold the
+left button. Turn back and walk to the foul line. Pull the
+mouse back, push it forward, let go at the lowest point.";
+
+/// Pixels of a touchpad that count as one notch of a wheel.
+const PIXELS_PER_NOTCH: f64 = 40.0;
+
+/// What an event of the window asks for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Command {
+    /// Something for the desk.
+    Desk(DeskEvent),
+    /// The keyboard went elsewhere: keys that are down will not be seen to go up.
+    LetGo,
+    /// Show or hide the help.
+    Help,
+    /// End the session and save.
+    End,
+}
+
+/// Turns window events into commands; remembers what a drag needs.
+#[derive(Debug, Default)]
+pub struct Keys {
+    cursor: Option<DVec2>,
+    is_looking: bool,
+}
+
+impl Keys {
+    /// The command in `event`, for a window of `size` pixels.
+    pub fn command(&mut self, event: &WindowEvent, size: PhysicalSize<u32>) -> Option<Command> {
+        match event {
+            WindowEvent::CloseRequested => Some(Command::End),
+            WindowEvent::Focused(false) => {
+                self.is_looking = false;
+                Some(Command::LetGo)
+            }
+            WindowEvent::KeyboardInput { event, .. } => {
+                let PhysicalKey::Code(code) = event.physical_key else {
+                    return None;
+                };
+                key(code, event.state.is_pressed(), event.repeat)
+            }
+            WindowEvent::MouseInput { state, button, .. } => self.button(*button, *state),
+            WindowEvent::CursorMoved { position, .. } => {
+                self.moved(DVec2::new(position.x, position.y), size)
+            }
+            WindowEvent::MouseWheel { delta, .. } => {
+                let notches = match delta {
+                    MouseScrollDelta::LineDelta(_, lines) => f64::from(*lines),
+                    MouseScrollDelta::PixelDelta(pixels) => pixels.y / PIXELS_PER_NOTCH,
+                };
+                Some(Command::Desk(DeskEvent::Wheel(notches)))
+            }
+            _ => None,
+        }
+    }
+
+    fn button(&mut self, button: MouseButton, state: ElementState) -> Option<Command> {
+        match button {
+            MouseButton::Left => Some(Command::Desk(DeskEvent::Grab(state.is_pressed()))),
+            MouseButton::Right => {
+                self.is_looking = state.is_pressed();
+                None
+            }
+            _ => None,
+        }
+    }
+
+    /// A drag with the right button turns the head and leaves the hand where it is.
+    fn moved(&mut self, to: DVec2, size: PhysicalSize<u32>) -> Option<Command> {
+        let from = self.cursor.replace(to).unwrap_or(to);
+        if self.is_looking {
+            return Some(Command::Desk(DeskEvent::Look(to - from)));
+        }
+        let half = 0.5 * DVec2::new(f64::from(size.width.max(1)), f64::from(size.height.max(1)));
+        let at = (to - half) / half;
+        Some(Command::Desk(DeskEvent::Cursor(DVec2::new(at.x, -at.y))))
+    }
+}
+
+fn key(code: KeyCode, down: bool, is_repeat: bool) -> Option<Command> {
+    let hold = |key| Some(Command::Desk(DeskEvent::Hold(key, down)));
+    let once = |command| (down && !is_repeat).then_some(command);
+    match code {
+        KeyCode::KeyW => hold(Hold::Forward),
+        KeyCode::KeyS => hold(Hold::Back),
+        KeyCode::KeyA | KeyCode::ArrowLeft => hold(Hold::TurnLeft),
+        KeyCode::KeyD | KeyCode::ArrowRight => hold(Hold::TurnRight),
+        KeyCode::Digit1 | KeyCode::Numpad1 => {
+            once(Command::Desk(DeskEvent::Press(game::Button::Red)))
+        }
+        KeyCode::Digit2 | KeyCode::Numpad2 => {
+            once(Command::Desk(DeskEvent::Press(game::Button::Blue)))
+        }
+        KeyCode::F1 => once(Command::Help),
+        KeyCode::Escape => once(Command::End),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIZE: PhysicalSize<u32> = PhysicalSize {
+        width: 800,
+        height: 600,
+    };
+
+    #[test]
+    fn cursor_runs_from_minus_one_to_one_with_y_up() {
+        let mut keys = Keys::default();
+        let at = |keys: &mut Keys, x, y| keys.moved(DVec2::new(x, y), SIZE);
+        let cursor = |x, y| Some(Command::Desk(DeskEvent::Cursor(DVec2::new(x, y))));
+        assert_eq!(at(&mut keys, 0.0, 0.0), cursor(-1.0, 1.0));
+        assert_eq!(at(&mut keys, 800.0, 600.0), cursor(1.0, -1.0));
+        assert_eq!(at(&mut keys, 400.0, 150.0), cursor(0.0, 0.5));
+    }
+
+    #[test]
+    fn a_right_drag_looks_and_does_not_move_the_hand() {
+        let mut keys = Keys::default();
+        keys.moved(DVec2::new(100.0, 100.0), SIZE);
+        keys.button(MouseButton::Right, ElementState::Pressed);
+        let look = keys.moved(DVec2::new(110.0, 95.0), SIZE);
+        assert_eq!(
+            look,
+            Some(Command::Desk(DeskEvent::Look(DVec2::new(10.0, -5.0))))
+        );
+        keys.button(MouseButton::Right, ElementState::Released);
+        let moved = keys.moved(DVec2::new(110.0, 95.0), SIZE);
+        assert!(matches!(moved, Some(Command::Desk(DeskEvent::Cursor(_)))));
+    }
+
+    #[test]
+    fn holding_a_button_key_presses_once() {
+        let press = Some(Command::Desk(DeskEvent::Press(game::Button::Red)));
+        assert_eq!(key(KeyCode::Digit1, true, false), press);
+        assert_eq!(key(KeyCode::Digit1, true, true), None);
+        assert_eq!(key(KeyCode::Digit1, false, false), None);
+    }
+
+    #[test]
+    fn help_names_every_key() {
+        for name in ["mouse", "wheel", "left button", "W S", "1 2", "F1", "Esc"] {
+            assert!(HELP.contains(name), "{name} is not in the help");
+        }
+    }
+}
