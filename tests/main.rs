@@ -1,5 +1,7 @@
 //! Tests of the whole product, one module each.
 
+/// Meshes and textures against their generator.
+mod assets;
 /// What is refused, and with which sentence.
 mod bad_input;
 /// Pictures of hand-set states, both eyes, against references.

@@ -83,7 +83,7 @@ pub fn run(setup: Setup, root: &Path, wanted: Wanted, choice: Choice) -> Result<
 
 /// Who plays in the window.
 enum Player {
-    Desk(Box<Desk>, Gamepads),
+    Desk(Box<Desk>, Box<Gamepads>),
     Script(Box<Script>),
 }
 
@@ -101,7 +101,7 @@ impl Player {
         }
         let steps = (config.physics.step_hz / setup.rate_hz).round() as u32;
         let desk = Desk::new(config.participant.eye_height_m, steps, 1.0 / setup.rate_hz);
-        Self::Desk(Box::new(desk), Gamepads::open())
+        Self::Desk(Box::new(desk), Box::new(Gamepads::open()))
     }
 
     /// The device, told that `count` of its inputs are due.
