@@ -321,3 +321,41 @@ fn poses_that_are_no_numbers_are_refused_and_counted_in_the_journal() {
     assert!(recorded.inputs[1].hand.is_none() && recorded.inputs[0].hand.is_some());
     assert!(replay(&folder).status.success());
 }
+
+/// Ctrl-C loses nothing: what was played until then is a whole recording.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_session_is_in_order_up_to_there() {
+    use std::process::{Command, Stdio};
+
+    let folder = fresh_folder("interrupted").join("session");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_bowling"))
+        .args(["play", "--offscreen", "--no-video", "--out"])
+        .arg(&folder)
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    // The first progress line comes from a game under way.
+    let mut lines = std::io::BufRead::lines(std::io::BufReader::new(
+        child.stderr.take().expect("it was piped"),
+    ));
+    let begun = lines.find(|line| line.as_ref().is_ok_and(|line| line.contains("frame 2")));
+    assert!(begun.is_some(), "no progress was shown");
+    let killed = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(killed.expect("kill is everywhere").success());
+    lines.for_each(drop);
+    assert!(child.wait().expect("it ends").success());
+    assert!(replay(&folder).status.success());
+    let recorded = journal::read(&folder.join("journal.jsonl")).expect("a journal");
+    assert!(!recorded.end.complete && recorded.end.red.is_some() && recorded.end.blue.is_none());
+    let hidden = fs::read_dir(&folder)
+        .expect("the recording")
+        .filter(|entry| {
+            let name = entry.as_ref().expect("readable").file_name();
+            name.to_string_lossy().starts_with('.')
+        });
+    assert_eq!(hidden.count(), 0, "a temporary file was left");
+}

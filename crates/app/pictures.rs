@@ -7,8 +7,10 @@ pub mod highlights;
 mod layout;
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use game::{Config, DisplayConfig, Visible};
 use image::RgbaImage;
 use renderer::{BackendChoice, Gpu, Renderer, RendererSettings, TextBlock, TextPainter, View};
@@ -35,6 +37,8 @@ pub struct Painter {
     display: DisplayConfig,
     /// Middle of the pin deck in front, world frame.
     headpin_z: f64,
+    /// Set from outside to stop drawing.
+    stop: Arc<AtomicBool>,
 }
 
 impl Painter {
@@ -54,7 +58,18 @@ impl Painter {
             stock,
             display: config.display.clone(),
             headpin_z: config.lane.headpin_z_m,
+            stop: Arc::default(),
         })
+    }
+
+    /// The same painter, which stops between two pictures once `stop` is set.
+    pub fn stopped_by(self, stop: Arc<AtomicBool>) -> Self {
+        Painter { stop, ..self }
+    }
+
+    /// True when drawing was stopped from outside.
+    pub fn is_stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
     }
 
     /// The contact sheet and, when wanted, the highlights of one game; returns their paths.
@@ -84,6 +99,9 @@ impl Painter {
         eyes: &[View; 2],
         size: (u32, u32),
     ) -> Result<[RgbaImage; 2]> {
+        if self.is_stopped() {
+            bail!("the drawing was interrupted");
+        }
         let visible = still.iter().chain(&shot.moving);
         let scene = convert::scene(visible, &self.stock, shot.hand_is_closed);
         let images = self.renderer.render(&scene, eyes, size.0, size.1)?;

@@ -78,7 +78,8 @@ pub fn interruption() -> Result<Arc<AtomicBool>> {
 /// The scripted participant plays both games without a screen, as fast as the machine can.
 fn offscreen(setup: Setup, root: &Path, wanted: Wanted) -> Result<()> {
     // Before anything is written: a missing driver or asset must not cost a game.
-    let mut painter = Painter::new(root, &setup.conditions.lobby)?;
+    let stop = interruption()?;
+    let mut painter = Painter::new(root, &setup.conditions.lobby)?.stopped_by(Arc::clone(&stop));
     let mut script = Script::new(
         &setup.conditions.lobby,
         setup.seed,
@@ -86,7 +87,6 @@ fn offscreen(setup: Setup, root: &Path, wanted: Wanted) -> Result<()> {
         &Button::BOTH,
     );
     let frames = setup.frames;
-    let stop = interruption()?;
     let started = Instant::now();
     let mut session = Session::start(setup)?;
     let mut progress = Progress::new();
@@ -98,12 +98,12 @@ fn offscreen(setup: Setup, root: &Path, wanted: Wanted) -> Result<()> {
         session.finish(None, wanted, &mut |_| ())?;
         return Err(error);
     }
-    let is_interrupted = stop.load(Ordering::Relaxed);
-    let painter = (!is_interrupted).then_some(&mut painter);
-    let summary = session.finish(painter, wanted, &mut |text| progress.say(text))?;
+    let summary = session.finish(Some(&mut painter), wanted, &mut |text| progress.say(text))?;
     progress.end();
-    if is_interrupted {
-        println!("Interrupted: the recording is in order up to here, without pictures.");
+    if painter.is_stopped() {
+        println!(
+            "Interrupted: the recording is in order up to here; pictures that were not finished are left out."
+        );
     }
     report(&summary);
     println!(

@@ -195,7 +195,12 @@ impl Session {
         if let Some(painter) = painter {
             let (still, films) = self.camera.develop();
             for film in latest_of_each(films) {
-                files.extend(painter.paint(&still, &film, &self.folder, wanted, progress)?);
+                match painter.paint(&still, &film, &self.folder, wanted, progress) {
+                    Ok(pictures) => files.extend(pictures),
+                    // The recording is whole; only pictures are missing, as was asked for.
+                    Err(_) if painter.is_stopped() => break,
+                    Err(error) => return Err(error),
+                }
             }
         }
         Ok(Summary { files, ..summary })
