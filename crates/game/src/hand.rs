@@ -1,5 +1,6 @@
 //! Head and hand: from the tracker to the world, and from frame to frame through the physics steps.
 
+use glam::DVec3;
 use physics::{Pose, Shape};
 
 use crate::components::Held;
@@ -121,7 +122,20 @@ impl Game {
         if let Some(held) = self.hand.held {
             let target = grab::kept_out(&self.room, held.entity, pose * held.hand_from_body);
             let id = self.room.id(held.entity);
-            self.room.world.drive_to(id, target);
+            let way = self
+                .room
+                .world
+                .body(id)
+                .pose()
+                .position
+                .distance(target.position);
+            if way > self.room.config.hand.jump_speed_mps * self.room.world.dt() {
+                // It slipped round a corner of what held it back: it must not strike anything on that way.
+                self.room.world.set_pose(id, target);
+                self.room.world.set_velocity(id, DVec3::ZERO, DVec3::ZERO);
+            } else {
+                self.room.world.drive_to(id, target);
+            }
         }
     }
 

@@ -321,6 +321,11 @@ impl Game {
         }
     }
 
+    /// The bodies of the alley, to look at: what tests of the physics and measurements need.
+    pub fn world(&self) -> &physics::World {
+        &self.room.world
+    }
+
     /// A number that differs as soon as any bit of the simulated state does: FNV-1a over world, room and sheets.
     pub fn hash(&self) -> u64 {
         let mut hash = Fnv::new();

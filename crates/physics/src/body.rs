@@ -104,6 +104,10 @@ pub struct Body {
     pub(crate) fresh: bool,
     /// Whether it stands perfectly still in this step, on its base alone.
     pub(crate) rests: bool,
+    /// Impulses taken in this step.
+    pub(crate) blows: u32,
+    /// Whether it took too many, and stays where it is for the rest of the step.
+    pub(crate) squeezed: bool,
 }
 
 impl Body {
@@ -133,6 +137,8 @@ impl Body {
             contacts: 0,
             rests: false,
             fresh: true,
+            blows: 0,
+            squeezed: false,
         };
         body.set_velocity(def.linear_velocity, def.angular_velocity);
         body
@@ -234,7 +240,7 @@ impl Body {
 
     /// Whether impulses move it.
     pub(crate) fn is_dynamic(&self) -> bool {
-        self.motion == Motion::Dynamic && !self.frozen
+        self.motion == Motion::Dynamic && !self.frozen && !self.squeezed
     }
 
     /// Whether it is dynamic and awake.

@@ -65,4 +65,4 @@ pub use compound::{Compound, Part};
 pub use pose::Pose;
 pub use response::Response;
 pub use shape::{Shape, ShapeError};
-pub use world::{BodyId, Impact, Settings, SettingsError, World};
+pub use world::{BodyId, Effort, Impact, Settings, SettingsError, World};

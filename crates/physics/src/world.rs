@@ -82,6 +82,19 @@ pub struct Impact {
     pub impulse: DVec3,
 }
 
+/// How much work a world's steps were so far: counts, not times, so that they are the same on every machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Effort {
+    /// Contacts that came about and were answered.
+    pub events: u64,
+    /// Impulses given in their answers.
+    pub impulses: u64,
+    /// Times at which a pair of parts was looked at.
+    pub looks: u64,
+    /// Answers of single lasting contacts.
+    pub passes: u64,
+}
+
 /// Bodies and their contacts. Cloning it is a snapshot: the clone runs on to the same bits.
 #[derive(Clone, Debug)]
 pub struct World {
@@ -92,6 +105,7 @@ pub struct World {
     pub(crate) targets: Vec<Option<Pose>>,
     pub(crate) pairs: Pairs,
     pub(crate) impacts: Vec<Impact>,
+    pub(crate) effort: Effort,
     pub(crate) steps: u64,
 }
 
@@ -123,6 +137,7 @@ impl World {
             targets: Vec::new(),
             pairs: Pairs::default(),
             impacts: Vec::new(),
+            effort: Effort::default(),
             steps: 0,
         })
     }
@@ -264,6 +279,11 @@ impl World {
     /// Impacts of the last step, in the order in which they happened.
     pub fn impacts(&self) -> &[Impact] {
         &self.impacts
+    }
+
+    /// How much work all steps were so far.
+    pub fn effort(&self) -> Effort {
+        self.effort
     }
 
     /// Whether two bodies were in contact at the end of the last step: resting on each other or just struck.

@@ -7,5 +7,7 @@ mod play;
 mod reproduce;
 /// Buttons, walking, touching, dropping.
 mod room;
+/// Hands that jab, squeeze and jump.
+mod rough;
 /// A participant for tests.
 mod support;

@@ -10,10 +10,17 @@ use crate::body::Body;
 use crate::response::{Coefficients, Response, impulse};
 use crate::world::{Impact, World};
 
-/// Most events in a step; a guard against endless ones, far above what a rack makes.
-const EVENTS: usize = 2000;
 /// Most impulses in answer to one event.
 const ROUNDS: usize = 60;
+/// Impulses that a body takes in a step before restitution is dropped.
+///
+/// What bounces between two walls that approach each other does so endlessly in a finite time, and gains speed.
+const ELASTIC_BLOWS: u32 = 24;
+/// Impulses that a body takes in a step before it is squeezed.
+///
+/// Then whatever holds it cannot be satisfied, as between the hand and a wall: it stops, and what moves on overlaps it.
+/// Every impulse moves a body that is not squeezed yet, so that no step has more than this for each body.
+const BLOWS: u32 = 64;
 /// Slower approach than this is left to the lasting contact [m/s].
 const APPROACH: f64 = 1e-6;
 /// Rounds after which restitution is dropped, so that a body between two others comes to terms with them.
@@ -33,13 +40,8 @@ impl World {
                 }
             }
         }
-        for _ in 0..EVENTS {
-            let Some(next) = earliest(&events) else {
-                return;
-            };
-            if next.time >= dt {
-                return;
-            }
+        while let Some(next) = earliest(&events).filter(|e| e.time < dt) {
+            self.effort.events += 1;
             let changed = self.answer(next, dt);
             let involved = |slot: u32| changed.contains(&(slot as usize));
             events.retain(|e| !involved(e.key.a) && !involved(e.key.b));
@@ -65,7 +67,9 @@ impl World {
                 break;
             };
             let touch = touches[worst];
+            self.effort.impulses += 1;
             self.strike(&touch, round < ELASTIC_ROUNDS);
+            self.squeeze(&touch);
             for slot in [touch.a, touch.b] {
                 if !struck.contains(&slot) && self.bodies[slot].is_dynamic() {
                     struck.push(slot);
@@ -76,6 +80,10 @@ impl World {
         if struck.is_empty() {
             // Nothing approaches: the contact only begins. Its bodies still change from flight to support.
             struck.extend([event.key.a as usize, event.key.b as usize]);
+            for slot in &struck {
+                self.bodies[*slot].blows += 1;
+            }
+            self.squeeze(&touches[0]);
             struck.retain(|slot| self.bodies[*slot].is_active());
             for slot in struck.clone() {
                 self.spread(slot, t, dt, &mut bodies, &mut touches);
@@ -141,7 +149,10 @@ impl World {
                 touch.set_point(pressure_point(touch, &base, &self.bodies), &self.bodies);
             }
             let speed = touch.normal.dot(touch.slip(&self.bodies));
-            if speed > APPROACH && worst.is_none_or(|w| speed > w.1) {
+            let movable = [touch.a, touch.b]
+                .iter()
+                .any(|s| self.bodies[*s].is_dynamic());
+            if movable && speed > APPROACH && worst.is_none_or(|w| speed > w.1) {
                 worst = Some((i, speed));
             }
             if first {
@@ -156,7 +167,8 @@ impl World {
         let slip = touch.slip(&self.bodies);
         let approach = touch.normal.dot(slip);
         let mut pair = coefficients(&self.bodies[touch.a], &self.bodies[touch.b]);
-        if approach < self.resting_speed() || !elastic {
+        let worn = |slot: usize| self.bodies[slot].blows >= ELASTIC_BLOWS;
+        if approach < self.resting_speed() || !elastic || worn(touch.a) || worn(touch.b) {
             // A slow touch is the beginning of a lasting contact, and that has a friction of its own.
             pair = Coefficients {
                 elasticity: 0.0,
@@ -167,6 +179,9 @@ impl World {
         let k = touch.compliance(&self.bodies);
         let impulse = impulse(response, pair, touch.normal, slip, &k);
         touch.push(&mut self.bodies, impulse);
+        for slot in [touch.a, touch.b] {
+            self.bodies[slot].blows += 1;
+        }
         self.impacts.push(Impact {
             a: self.id(touch.a),
             b: self.id(touch.b),
@@ -175,6 +190,20 @@ impl World {
             approach_speed: approach,
             impulse,
         });
+    }
+
+    /// Stops the bodies of a contact that have taken too many blows, for the rest of the step.
+    fn squeeze(&mut self, touch: &Touch) {
+        for slot in [touch.a, touch.b] {
+            let body = &mut self.bodies[slot];
+            if body.is_dynamic() && body.blows >= BLOWS {
+                body.squeezed = true;
+                // A broken state is not to look sound again: its body is frozen when the step ends.
+                if body.is_finite() {
+                    body.halt();
+                }
+            }
+        }
     }
 
     /// Decides which contacts last: close and hardly separating.
@@ -217,7 +246,12 @@ impl World {
         if carried.is_empty() || span < 1e-9 {
             return;
         }
-        let lasts = |touch: &&Touch| self.pairs.part(touch.key).touching;
+        let movable = |touch: &Touch| {
+            [touch.a, touch.b]
+                .iter()
+                .any(|slot| self.bodies[*slot].is_dynamic())
+        };
+        let lasts = |touch: &&Touch| self.pairs.part(touch.key).touching && movable(touch);
         let lasting: Vec<Touch> = touches.iter().filter(lasts).copied().collect();
         self.carry(&lasting, &carried, span);
     }

@@ -42,6 +42,7 @@ impl World {
             body.advance(dt, dt);
             body.straighten();
             body.fresh = false;
+            (body.blows, body.squeezed) = (0, false);
         }
         self.freeze_broken();
         if self.settings.sleeping {

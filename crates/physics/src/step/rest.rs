@@ -59,13 +59,14 @@ impl World {
         let mut rows = self.rows(touches, &slots, &movers, span);
         let ends = group(&mut rows, &movers);
         let before = movers.clone();
-        let answer = |movers: &mut [Mover], rows: &mut [Row]| {
+        let mut passes = 0;
+        let mut answer = |movers: &mut [Mover], rows: &mut [Row]| {
             for mover in &mut movers[..carried.len()] {
                 mover.linear += kick;
             }
             let mut start = 0;
             for end in &ends {
-                answer_group(&mut rows[start..*end], movers, &self.bodies, enough);
+                passes += answer_group(&mut rows[start..*end], movers, &self.bodies, enough);
                 start = *end;
             }
         };
@@ -73,6 +74,7 @@ impl World {
         let middle = movers.clone();
         rows.iter_mut().for_each(Row::renew);
         answer(&mut movers, &mut rows);
+        self.effort.passes += u64::from(passes);
         for (i, slot) in slots.iter().enumerate() {
             let body = &mut self.bodies[*slot];
             if !body.is_dynamic() {

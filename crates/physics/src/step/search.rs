@@ -38,6 +38,8 @@ struct Found {
     normal: DVec3,
     /// Proven gap at the start of the search.
     gap: f64,
+    /// Times looked at.
+    looks: u32,
 }
 
 impl World {
@@ -78,6 +80,7 @@ impl World {
                 continue;
             }
             let found = self.part_contact(known, (a, b), (t0, dt), (&starts, &ends));
+            self.effort.looks += u64::from(found.looks);
             let entry = self.pairs.part_mut(key);
             entry.normal = found.normal;
             entry.clearance = if entry.touching {
@@ -116,6 +119,7 @@ impl World {
                     time: None,
                     normal: known.normal,
                     gap: rough,
+                    looks: 1,
                 };
             }
         }
@@ -130,7 +134,9 @@ impl World {
         let mut first_gap = gap;
         let mut searched = false;
         let (mut time, mut end) = (t0, dt);
+        let mut looks = 0;
         for _ in 0..SEARCHES {
+            looks += 1;
             let stale = gap <= CONTACT && !known.touching;
             if !searched && (stale || normal == DVec3::ZERO) {
                 let found = self.search(&placed.0, &placed.1, normal);
@@ -145,6 +151,7 @@ impl World {
                             time: Some(time),
                             normal,
                             gap: first_gap,
+                            looks,
                         };
                     }
                 }
@@ -175,6 +182,7 @@ impl World {
                         time: None,
                         normal,
                         gap: first_gap,
+                        looks,
                     };
                 }
                 time = end;
@@ -192,6 +200,7 @@ impl World {
                                 time: Some(time),
                                 normal,
                                 gap: first_gap,
+                                looks,
                             };
                         }
                     }
@@ -200,6 +209,7 @@ impl World {
                         time: Some(root),
                         normal,
                         gap: first_gap,
+                        looks,
                     };
                 }
                 time = root;
@@ -218,6 +228,7 @@ impl World {
                         time: Some(time),
                         normal,
                         gap: first_gap,
+                        looks,
                     };
                 }
             }
@@ -226,6 +237,7 @@ impl World {
             time: Some(time),
             normal,
             gap: first_gap,
+            looks,
         }
     }
 }

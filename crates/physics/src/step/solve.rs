@@ -12,7 +12,7 @@ use crate::body::Body;
 use crate::response::compliance;
 
 /// Most passes over the normals of a group.
-const PASSES: usize = 40;
+const PASSES: u32 = 40;
 
 /// A body as the rows see it.
 #[derive(Clone, Copy, Debug)]
@@ -220,17 +220,22 @@ impl Row {
 }
 
 /// Answers a group of rows that share bodies, until no pass changes a velocity by more than `enough` [m/s].
-pub(crate) fn answer_group(rows: &mut [Row], all: &mut [Mover], bodies: &[Body], enough: f64) {
+pub(crate) fn answer_group(
+    rows: &mut [Row],
+    all: &mut [Mover],
+    bodies: &[Body],
+    enough: f64,
+) -> u32 {
     for row in rows.iter_mut().filter(|r| r.touch.base.is_none()) {
         row.rub(all);
     }
     if let [row] = rows
         && row.touch.base.is_none()
     {
-        return;
+        return 1;
     }
     let passes = if rows.len() == 1 { 1 } else { PASSES };
-    for _ in 0..passes {
+    for pass in 0..passes {
         let mut worst: f64 = 0.0;
         for row in rows.iter_mut() {
             worst = worst.max(match row.touch.base {
@@ -239,9 +244,10 @@ pub(crate) fn answer_group(rows: &mut [Row], all: &mut [Mover], bodies: &[Body],
             });
         }
         if worst <= enough {
-            return;
+            return (pass + 1) * rows.len() as u32;
         }
     }
+    passes * rows.len() as u32
 }
 
 /// Sorts rows into groups that share no moved body, each in its old order; returns the groups' ends.
