@@ -10,5 +10,7 @@ source scripts/system-packages.sh
 require_cargo
 require_packages "${build_packages[@]}" "${graphics_packages[@]}" "${window_packages[@]}"
 
+provide_runtime_folder
+
 cargo build --release --locked --bin bowling
 exec "${CARGO_TARGET_DIR:-$root/target}/release/bowling" play "$@"

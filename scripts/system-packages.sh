@@ -77,3 +77,12 @@ require_cargo() {
   echo "No Rust toolchain found: install Rust 1.95 or newer (rustup, or your system's package) and start again." >&2
   return 1
 }
+
+# Where there is no desktop session this variable is unset, and drivers complain about it on every start.
+provide_runtime_folder() {
+  if [ -z "${XDG_RUNTIME_DIR:-}" ]; then
+    export XDG_RUNTIME_DIR="${CARGO_TARGET_DIR:-$PWD/target}/runtime"
+    mkdir -p "$XDG_RUNTIME_DIR"
+    chmod 700 "$XDG_RUNTIME_DIR"
+  fi
+}

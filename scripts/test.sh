@@ -8,6 +8,8 @@ source scripts/system-packages.sh
 require_cargo
 require_packages "${build_packages[@]}" "${graphics_packages[@]}" "${window_packages[@]}" "${test_packages[@]}"
 
+provide_runtime_folder
+
 step() { printf '\n== %s\n' "$*"; }
 
 step "format"

@@ -358,8 +358,6 @@ mod tests {
         DisplayConfig {
             profile,
             eye_distance_m: 0.06,
-            near_m: 0.05,
-            far_m: 60.0,
             modern: angles(54.0, 44.0, 46.0, 50.0),
             of_1996: angles(37.5, 37.5, 20.0, 20.0),
         }

@@ -447,10 +447,6 @@ pub struct DisplayConfig {
     pub profile: DisplayProfileName,
     /// Distance between the eyes [m].
     pub eye_distance_m: f64,
-    /// Nearest distance that is drawn [m].
-    pub near_m: f64,
-    /// Farthest distance that is drawn [m].
-    pub far_m: f64,
     /// A headset of today.
     pub modern: DisplayProfile,
     /// The headset of the experiment.

@@ -399,8 +399,6 @@ fn display(config: &Config) -> Result<(), Invalid> {
     let table = Table { name: "display" };
     let display = &config.display;
     table.within("eye_distance_m", display.eye_distance_m, 0.0, 0.1)?;
-    table.within("near_m", display.near_m, 0.001, 1.0)?;
-    table.within("far_m", display.far_m, 25.0, 10_000.0)?;
     profile("display.modern", &display.modern)?;
     profile("display.1996", &display.of_1996)
 }
