@@ -11,9 +11,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result, bail};
-use game::{Config, DisplayConfig, Visible};
+use game::{Config, DisplayConfig, DisplayProfile, Visible};
 use image::RgbaImage;
-use renderer::{BackendChoice, Gpu, Renderer, RendererSettings, TextBlock, TextPainter, View};
+use renderer::{
+    BackendChoice, Gpu, Renderer, RendererSettings, TextBlock, TextPainter, View, relay,
+};
 
 use self::film::{Film, Shot};
 use crate::convert::{self, Stock};
@@ -39,6 +41,17 @@ pub struct Painter {
     headpin_z: f64,
     /// Set from outside to stop drawing.
     stop: Arc<AtomicBool>,
+}
+
+/// The pixels that are drawn, and those of the display that they are relayed to, for a picture of `size`.
+fn pixels(display: &DisplayProfile, size: (u32, u32)) -> ((u32, u32), (u32, u32)) {
+    let own = (display.width_px, display.height_px);
+    let relayed = (display.relayed_width_px, display.relayed_height_px);
+    if own != relayed {
+        return (own, relayed);
+    }
+    let seen = (size.0.min(own.0), size.1.min(own.1));
+    (seen, seen)
 }
 
 impl Painter {
@@ -91,7 +104,11 @@ impl Painter {
         Ok(files)
     }
 
-    /// Both eyes of one snapshot, left first, each of `size` pixels.
+    /// Both eyes of one snapshot, left first, each of `size` pixels, as the display shows them.
+    ///
+    /// A display that relays its image to fewer pixels is imitated step by step: drawn whole, relayed, then brought to
+    /// `size`. Else the picture is drawn at `size`, or at the display's own where that is smaller: more pixels than the
+    /// picture has would be thrown away again.
     fn draw(
         &mut self,
         still: &[Visible],
@@ -104,7 +121,10 @@ impl Painter {
         }
         let visible = still.iter().chain(&shot.moving);
         let scene = convert::scene(visible, &self.stock, shot.hand_is_closed);
-        let images = self.renderer.render(&scene, eyes, size.0, size.1)?;
+        let (drawn, relayed) = pixels(self.display.current(), size);
+        let images = self.renderer.render(&scene, eyes, drawn.0, drawn.1)?;
+        let shown = |image: &RgbaImage| relay(&relay(image, relayed.0, relayed.1), size.0, size.1);
+        let images: Vec<RgbaImage> = images.iter().map(shown).collect();
         images
             .try_into()
             .map_err(|_| anyhow::anyhow!("the renderer drew another number of eyes than two"))
@@ -146,5 +166,41 @@ impl Painter {
     /// A pair of eyes before the pin deck, as far apart as the participant's.
     fn spectator_eyes(&self) -> [View; 2] {
         convert::spectator_eyes(self.headpin_z, &self.display)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn display(own: (u32, u32), relayed: (u32, u32)) -> DisplayProfile {
+        DisplayProfile {
+            outer_deg: 40.0,
+            inner_deg: 40.0,
+            up_deg: 20.0,
+            down_deg: 20.0,
+            width_px: own.0,
+            height_px: own.1,
+            relayed_width_px: relayed.0,
+            relayed_height_px: relayed.1,
+        }
+    }
+
+    #[test]
+    fn pixels_of_a_relaying_display_are_its_own_whatever_the_picture() {
+        let of_1996 = display((704, 480), (360, 240));
+        assert_eq!(pixels(&of_1996, (300, 142)), ((704, 480), (360, 240)));
+    }
+
+    #[test]
+    fn pixels_of_a_fine_display_are_the_pictures_and_of_a_coarse_one_its_own() {
+        assert_eq!(
+            pixels(&display((1440, 1440), (1440, 1440)), (160, 150)),
+            ((160, 150), (160, 150))
+        );
+        assert_eq!(
+            pixels(&display((64, 64), (64, 64)), (160, 150)),
+            ((64, 64), (64, 64))
+        );
     }
 }
