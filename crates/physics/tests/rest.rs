@@ -2,8 +2,8 @@
 
 mod support;
 
-use glam::DVec3;
-use physics::{Response, Settings};
+use glam::{DQuat, DVec3};
+use physics::{Pose, Response, Settings, World};
 use support::*;
 
 #[test]
@@ -30,6 +30,35 @@ fn a_rack_stands_awake_for_a_minute() {
                     assert!(tilt(&world, *id) < 1e-4);
                 }
             }
+        }
+    }
+}
+
+#[test]
+fn a_pin_that_circles_on_its_edge_comes_to_stand_where_there_is_friction() {
+    for (friction_rate, stands) in [(0.7, true), (0.0, false)] {
+        for shape in [composite_pin(), ellipsoid_pin()] {
+            let m = material(0.7, friction_rate);
+            let mut world = World::new(Settings::default()).expect("default settings run");
+            world.add(block(
+                m,
+                DVec3::new(-2.0, -1.0, -2.0),
+                DVec3::new(2.0, 0.0, 2.0),
+            ));
+            let mut def = pin(&shape, m, DVec3::ZERO);
+            // Leaning on its edge, and turning about the line from there through its centre: no slip anywhere.
+            let (lean, edge) = (0.042f64, DVec3::X * BASE_RADIUS);
+            let rotation = DQuat::from_rotation_z(-lean);
+            let arm = rotation * (DVec3::Y * PIN_CG - edge);
+            def.pose = Pose::new(arm + edge, rotation);
+            def.angular_velocity = arm / arm.length() * 5.5;
+            let id = world.add(def);
+            for _ in 0..720 * 4 {
+                world.step();
+            }
+            let turning = world.body(id).angular_velocity().length();
+            assert_eq!(turning < 0.3, stands, "{turning} rad/s after 4 s");
+            assert!(tilt(&world, id) < 8.0);
         }
     }
 }

@@ -127,7 +127,13 @@ impl Row {
     fn rub(&mut self, all: &mut [Mover]) {
         let n = self.touch.normal;
         let (arm_a, arm_b) = (self.touch.arm_a, self.touch.arm_b);
-        let slip = all[self.movers.0].velocity(arm_a) - all[self.movers.1].velocity(arm_b);
+        let slip_of =
+            |all: &[Mover]| all[self.movers.0].velocity(arm_a) - all[self.movers.1].velocity(arm_b);
+        if n.dot(slip_of(all)) <= self.allowed {
+            return;
+        }
+        self.twist(all);
+        let slip = slip_of(all);
         let approach = n.dot(slip) - self.allowed;
         if approach <= 0.0 {
             return;
@@ -144,6 +150,25 @@ impl Row {
         self.pressed = -impulse.dot(n);
         all[self.movers.0].push(arm_a, impulse);
         all[self.movers.1].push(arm_b, -impulse);
+    }
+
+    /// Friction of a tilted base against turning on its edge, at the rate that the whole base has.
+    ///
+    /// A point would take nothing of a spin about the normal, and a pin would circle on its edge for ever.
+    fn twist(&self, all: &mut [Mover]) {
+        if !self.touch.on_base || self.rate == 0.0 {
+            return;
+        }
+        let n = self.touch.normal;
+        let (a, b) = (&all[self.movers.0], &all[self.movers.1]);
+        let (turn_a, turn_b) = (a.inv_inertia * n, b.inv_inertia * n);
+        let ease = n.dot(turn_a + turn_b);
+        if ease <= 0.0 {
+            return;
+        }
+        let impulse = self.rate * n.dot(a.angular - b.angular) / ease;
+        all[self.movers.0].angular -= turn_a * impulse;
+        all[self.movers.1].angular += turn_b * impulse;
     }
 
     /// One pass at a point: the normal impulse that stops the approach, or less of it if it pulls.

@@ -14,6 +14,9 @@ use crate::world::World;
 /// Rise of a flat base across its width up to which it counts as parallel to the face below [m].
 const PARALLEL: f64 = 2e-6;
 
+/// Tilt of a flat base up to which its edge presses on an arc rather than on a point [rad]: a pin tips at 0.17.
+const ON_EDGE: f64 = 0.2;
+
 /// A flat round base that lies on a flat face: the contact is the whole patch, not a point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Base {
@@ -99,6 +102,8 @@ pub(crate) struct Touch {
     pub arm_a: DVec3,
     pub arm_b: DVec3,
     pub base: Option<Base>,
+    /// Whether it is a flat base, lying or a little tilted, on a flat face: friction then also takes the turn on it.
+    pub on_base: bool,
 }
 
 /// A pose with its rotation as a matrix, from which parts are placed.
@@ -218,6 +223,7 @@ impl World {
             arm_a: DVec3::ZERO,
             arm_b: DVec3::ZERO,
             base,
+            on_base: base.is_some() || is_on_edge(&placed_a, &placed_b, found.normal),
         };
         touch.set_point((found.point_a + found.point_b) * 0.5, &self.bodies);
         let entry = self.pairs.part_mut(key);
@@ -258,6 +264,21 @@ fn base(a: &Placed, b: &Placed, normal: DVec3) -> Option<Base> {
         radius,
         face,
     })
+}
+
+/// Whether the edge of one shape's flat base, a little tilted, stands on a flat face of the other.
+fn is_on_edge(a: &Placed, b: &Placed, normal: DVec3) -> bool {
+    let (round, down) = match (is_flat(b), is_flat(a)) {
+        (Some(_), _) if has_disc(a) => (a, normal),
+        (_, Some(_)) if has_disc(b) => (b, -normal),
+        _ => return false,
+    };
+    let piece = round.shape.tip(round.local(down)).piece;
+    let Some(sense) = round.shape.pole(piece) else {
+        return false;
+    };
+    let axis = round.rotation.y_axis * sense;
+    axis.dot(down) > 0.0 && axis.cross(down).length() < ON_EDGE
 }
 
 fn has_disc(shape: &Placed) -> bool {
