@@ -3,9 +3,9 @@
 use game::{Button, EventKind, Game, Model, Visible};
 use physics::Pose;
 
-/// Snapshots per second: a sixth of the scripted rate. Every one of them may become a picture of the
+/// Snapshots per second: a third of the scripted rate. Every one of them may become a picture of the
 /// video, which has to be drawn without a graphics card too.
-pub const SHOTS_PER_SECOND: u32 = 15;
+pub const SHOTS_PER_SECOND: u32 = 30;
 
 /// Everything that moves, at one instant.
 #[derive(Debug, Clone)]

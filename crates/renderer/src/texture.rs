@@ -128,10 +128,13 @@ pub(crate) fn bind_group_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout 
     })
 }
 
-/// Repeating, trilinear, anisotropic where the device offers it.
+/// Repeating, trilinear, anisotropic where a graphics card offers it.
+///
+/// Not on the processor: llvmpipe (Mesa 22.3) walks the whole footprint of a pixel texel by texel, and where a texture
+/// wraps round a ball the footprint is the whole texture. Single pictures took seconds.
 pub(crate) fn sampler(gpu: &Gpu) -> wgpu::Sampler {
     let flags = gpu.adapter.get_downlevel_capabilities().flags;
-    let offered = flags.contains(wgpu::DownlevelFlags::ANISOTROPIC_FILTERING);
+    let offered = flags.contains(wgpu::DownlevelFlags::ANISOTROPIC_FILTERING) && !gpu.is_software();
     gpu.device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("picture"),
         address_mode_u: wgpu::AddressMode::Repeat,
