@@ -81,7 +81,7 @@ require_cargo() {
 # Where there is no desktop session this variable is unset, and drivers complain about it on every start.
 provide_runtime_folder() {
   if [ -z "${XDG_RUNTIME_DIR:-}" ]; then
-    export XDG_RUNTIME_DIR="${CARGO_TARGET_DIR:-$PWD/target}/runtime"
+    export XDG_RUNTIME_DIR="${CARGO_TARGET_DIR:-${root:-$PWD}/target}/runtime"
     mkdir -p "$XDG_RUNTIME_DIR"
     chmod 700 "$XDG_RUNTIME_DIR"
   fi

@@ -15,6 +15,8 @@ const SIZE: u32 = 192;
 const MEAN: f64 = 0.4;
 /// Largest 99th percentile of the differences [1/255].
 const PERCENTILE_99: u8 = 6;
+/// Largest difference of all but one in a thousand [1/255]: the shadow of one ball covers two in a thousand.
+const PERCENTILE_999: u8 = 12;
 
 /// A hand-set state of the alley, so that no change of the physics changes a picture.
 struct State {
@@ -65,13 +67,20 @@ fn set(visible: &mut [Visible], model: Model, position: DVec3, rotation: DQuat) 
 fn states() -> Vec<State> {
     let conditions = conditions();
     let hand = DVec3::new(0.3, 1.1, 0.3);
-    let rack = room(&conditions, hand);
+    // The ball is held out over the lane, so that this picture has a shadow too.
+    let mut rack = room(&conditions, DVec3::new(0.25, 0.72, -0.65));
+    set(
+        &mut rack,
+        Model::Ball(0),
+        DVec3::new(0.25, 0.6, -0.75),
+        DQuat::from_rotation_x(0.8),
+    );
 
     let mut flight = room(&conditions, hand);
     set(
         &mut flight,
         Model::Ball(0),
-        DVec3::new(0.12, 0.32, -1.6),
+        DVec3::new(0.12, 0.3, -1.0),
         DQuat::from_rotation_x(0.8),
     );
 
@@ -101,7 +110,7 @@ fn states() -> Vec<State> {
     vec![
         State {
             name: "rack-from-foul-line",
-            head: head(0.15, 1.55, 0.3, 0.0, -0.12),
+            head: head(0.15, 1.55, 0.3, 0.0, -0.35),
             visible: rack,
         },
         State {
@@ -140,8 +149,8 @@ fn draw(state: &State, settings: RendererSettings) -> [RgbImage; 2] {
     images.map(|image| image::DynamicImage::ImageRgba8(image).to_rgb8())
 }
 
-/// Mean and 99th percentile of the differences of colour values.
-fn difference(a: &RgbImage, b: &RgbImage) -> (f64, u8) {
+/// Mean, 99th and 99.9th percentile of the differences of colour values.
+fn difference(a: &RgbImage, b: &RgbImage) -> (f64, u8, u8) {
     let mut differences: Vec<u8> = a
         .as_raw()
         .iter()
@@ -154,12 +163,16 @@ fn difference(a: &RgbImage, b: &RgbImage) -> (f64, u8) {
         .map(|value| f64::from(*value))
         .sum::<f64>()
         / differences.len() as f64;
-    (mean, differences[differences.len() * 99 / 100])
+    let percentile = |per_mille: usize| differences[differences.len() * per_mille / 1000];
+    (mean, percentile(990), percentile(999))
 }
 
 fn agrees(a: &RgbImage, b: &RgbImage) -> bool {
-    let (mean, percentile) = difference(a, b);
-    a.dimensions() == b.dimensions() && mean <= MEAN && percentile <= PERCENTILE_99
+    let (mean, percentile_99, percentile_999) = difference(a, b);
+    a.dimensions() == b.dimensions()
+        && mean <= MEAN
+        && percentile_99 <= PERCENTILE_99
+        && percentile_999 <= PERCENTILE_999
 }
 
 fn reference_path(name: &str, eye: &str) -> PathBuf {
@@ -207,7 +220,7 @@ fn compare(name: &str, eye: &str, actual: &RgbImage, kept: &Path) -> Result<(), 
     shown
         .save(&difference_path)
         .expect("the target folder can be written to");
-    let (mean, percentile) = difference(actual, &reference);
+    let (mean, percentile, _) = difference(actual, &reference);
     Err(format!(
         "{name}, {eye} eye: mean difference {mean:.2}, 99th percentile {percentile}; see {} and {}",
         actual_path.display(),

@@ -9,7 +9,7 @@ Examples:
   bowling play                            headset, else window, else a scripted game without a screen
   bowling play --device desk              bowl with the mouse (F1 in the window shows the keys)
   bowling play --offscreen --frames 3     a short scripted recording, no screen needed
-  bowling play --set lane.length_m=18.3   change one setting for this run
+  bowling play --set objects.elasticity=0.9   change one setting for this run
   bowling replay out/2026-01-31T10-15-00Z-seed1   check a recording to the last bit";
 
 /// Immersive pin bowling for presence experiments.

@@ -19,14 +19,21 @@ pub struct OutputFolder {
 }
 
 impl OutputFolder {
-    /// Creates the folder; one that holds a recording already is refused.
+    /// Creates the folder; one that holds anything already is refused.
     ///
     /// # Errors
-    /// When it holds a journal or cannot be written.
+    /// When it is not empty or cannot be written.
     pub fn create(path: &Path) -> Result<Self> {
         if path.join(JOURNAL).exists() {
             bail!(
                 "{} holds a recording already, and recordings are never overwritten: choose another folder with --out",
+                path.display()
+            );
+        }
+        let is_new = !path.exists();
+        if fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_some()) {
+            bail!(
+                "{} is not empty, and nothing in it is overwritten: choose a new or empty folder with --out",
                 path.display()
             );
         }
@@ -38,8 +45,12 @@ impl OutputFolder {
         };
         fs::create_dir_all(path).with_context(advice)?;
         // Found out now rather than after a game.
-        let trial = Draft::create(path, "trial").with_context(advice)?;
-        drop(trial);
+        let trial = Draft::create(path, "trial").with_context(advice);
+        if trial.is_err() && is_new {
+            // Nothing is in it, and a folder that cannot be removed is no worse than one that stays.
+            let _ = fs::remove_dir(path);
+        }
+        drop(trial?);
         Ok(OutputFolder {
             path: path.to_path_buf(),
         })

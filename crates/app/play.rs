@@ -63,6 +63,9 @@ pub fn play(arguments: &PlayArguments, root: &Path) -> Result<()> {
     }
 }
 
+/// What is said after Ctrl-C.
+pub const INTERRUPTED: &str = "Interrupted: the recording is in order up to here; pictures that were not finished are left out.";
+
 /// Turned on by Ctrl-C (or a request to terminate): the loop ends in order after its frame.
 ///
 /// # Errors
@@ -101,9 +104,7 @@ fn offscreen(setup: Setup, root: &Path, wanted: Wanted) -> Result<()> {
     let summary = session.finish(Some(&mut painter), wanted, &mut |text| progress.say(text))?;
     progress.end();
     if painter.is_stopped() {
-        println!(
-            "Interrupted: the recording is in order up to here; pictures that were not finished are left out."
-        );
+        println!("{INTERRUPTED}");
     }
     report(&summary);
     println!(
@@ -174,7 +175,13 @@ pub fn report(summary: &Summary) {
     }
     println!("State hash {}", summary.hash);
     if let Some(folder) = summary.files.first().and_then(|file| file.parent()) {
-        println!("Check it with: bowling replay {}", shell_word(folder));
+        let program = std::env::current_exe().unwrap_or_else(|_| "bowling".into());
+        let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+        println!(
+            "Check it with: {} replay {}",
+            shell_word(&program),
+            shell_word(&folder)
+        );
     }
 }
 

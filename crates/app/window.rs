@@ -61,7 +61,12 @@ pub fn run(setup: Setup, root: &Path, wanted: Wanted, choice: Choice) -> Result<
     events
         .run_app(&mut shell)
         .context("the window system ended the session")?;
-    let Shell { stage, failure, .. } = shell;
+    let Shell {
+        stage,
+        failure,
+        stop,
+        ..
+    } = shell;
     let Some(stage) = stage else {
         return Err(failure.unwrap_or_else(|| anyhow!("the window was closed before it opened")));
     };
@@ -73,10 +78,14 @@ pub fn run(setup: Setup, root: &Path, wanted: Wanted, choice: Choice) -> Result<
     let mut painter = session
         .has_throws()
         .then(|| Painter::new(root, &config))
-        .transpose()?;
+        .transpose()?
+        .map(|painter| painter.stopped_by(stop));
     let mut progress = Progress::new();
     let summary = session.finish(painter.as_mut(), wanted, &mut |text| progress.say(text))?;
     progress.end();
+    if painter.is_some_and(|painter| painter.is_stopped()) {
+        println!("{}", play::INTERRUPTED);
+    }
     play::report(&summary);
     Ok(())
 }

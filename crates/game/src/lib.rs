@@ -96,6 +96,32 @@ pub struct Game {
     events: Vec<Event>,
 }
 
+/// What the room and the session have once, whichever button is pressed, and a condition set to something else.
+///
+/// The building is drawn once, and a session has one display, one tracker and one participant.
+fn differing(condition: &Config, lobby: &Config) -> Option<&'static str> {
+    let once = [
+        (
+            "physics.step_hz",
+            condition.physics.step_hz != lobby.physics.step_hz,
+        ),
+        ("lane", condition.lane != lobby.lane),
+        ("gutter", condition.gutter != lobby.gutter),
+        ("kickback", condition.kickback != lobby.kickback),
+        ("pit", condition.pit != lobby.pit),
+        ("room", condition.room != lobby.room),
+        ("start", condition.start != lobby.start),
+        ("rack", condition.rack != lobby.rack),
+        ("desk", condition.desk != lobby.desk),
+        ("tracking", condition.tracking != lobby.tracking),
+        ("display", condition.display != lobby.display),
+        ("participant", condition.participant != lobby.participant),
+    ];
+    once.into_iter()
+        .find(|(_, differs)| *differs)
+        .map(|(name, _)| name)
+}
+
 impl Game {
     /// A session in the lobby: the room of the scene, nobody playing.
     ///
@@ -107,8 +133,8 @@ impl Game {
         }
         for button in Button::BOTH {
             let config = conditions.of(button);
-            if config.physics.step_hz != conditions.lobby.physics.step_hz {
-                return Err(GameError::DifferingCondition("physics.step_hz"));
+            if let Some(setting) = differing(config, &conditions.lobby) {
+                return Err(GameError::DifferingCondition(setting));
             }
             Room::new(config)?;
         }
