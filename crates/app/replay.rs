@@ -26,6 +26,7 @@ pub fn replay(folder: &Path) -> Result<()> {
     })?;
     let in_table = |problem: String| anyhow!("{} {problem}", motion_path.display());
     let mut comparison = Comparison::new(&table).map_err(in_table)?;
+    check_inputs(&recording)?;
     let conditions = recording.header.conditions.clone();
     let mut game = Game::new(conditions, recording.header.frames)
         .context("cannot set up the recorded alley")?;
@@ -49,6 +50,26 @@ pub fn replay(folder: &Path) -> Result<()> {
     }
     comparison.expect_end().map_err(in_table)?;
     print_result(&game, &started, &recording);
+    Ok(())
+}
+
+/// Refuses what no session records, before it can stall or break the simulation.
+fn check_inputs(recording: &Recording) -> Result<()> {
+    let conditions = &recording.header.conditions;
+    conditions.lobby.check()?;
+    for button in Button::BOTH {
+        conditions.of(button).check()?;
+    }
+    let longest = conditions.lobby.physics.step_hz;
+    for (index, input) in recording.inputs.iter().enumerate() {
+        let mut admitted = *input;
+        if admitted.refuse_unusable() > 0 || f64::from(input.steps) > longest {
+            bail!(
+                "input {} of the recording holds numbers that no session records: it was changed",
+                index + 1
+            );
+        }
+    }
     Ok(())
 }
 

@@ -139,6 +139,17 @@ impl Config {
         Ok(config)
     }
 
+    /// Checks settings that came from elsewhere than files and arguments, such as a recording.
+    ///
+    /// # Errors
+    /// A sentence with the key that is out of range.
+    pub fn check(&self) -> Result<(), ConfigError> {
+        validate::validate(self).map_err(|invalid| ConfigError {
+            place: "recorded settings".to_owned(),
+            problem: format!("key `{}`: {}", invalid.key, invalid.problem),
+        })
+    }
+
     /// The folder's `default.toml`, then `scenes/SCENE.toml`, then `CONDITION.toml` where one is named, then the arguments.
     ///
     /// # Errors

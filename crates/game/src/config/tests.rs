@@ -35,6 +35,29 @@ fn shipped_conditions_differ_in_friction_alone() {
 }
 
 #[test]
+fn check_finds_recorded_settings_that_no_file_could_hold() {
+    let mut config = default_config();
+    assert_eq!(config.check(), Ok(()));
+    config.objects.elasticity = 7.0;
+    let error = config.check().unwrap_err().to_string();
+    assert!(error.contains("objects.elasticity"), "{error}");
+}
+
+#[test]
+fn a_condition_cannot_move_a_wall() {
+    let lobby = default_config();
+    let mut blue = lobby.clone();
+    blue.room.half_width_m += 0.5;
+    let conditions = crate::Conditions {
+        red: lobby.clone(),
+        blue,
+        lobby,
+    };
+    let error = crate::Game::new(conditions, 1).err().unwrap();
+    assert_eq!(error, crate::GameError::DifferingCondition("room"));
+}
+
+#[test]
 fn stronger_layers_win() {
     let default = Layer::file(&folder().join("default.toml")).unwrap();
     let scene = Layer::text(
