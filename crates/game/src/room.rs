@@ -340,12 +340,7 @@ impl<'a> Builder<'a> {
             Pose::from_position(DVec3::Y),
             shown,
         );
-        let id = self
-            .ecs
-            .get::<&Physical>(entity)
-            .expect("it was just made")
-            .0;
-        self.world.set_collides(id, false);
+        self.pass_through(entity);
         Ok(entity)
     }
 
@@ -364,13 +359,18 @@ impl<'a> Builder<'a> {
         let compound = Arc::new(Compound::single(Shape::cuboid(size / 2.0)?));
         let pose = crate::pinsetter::bar_at_rest(self.config);
         let entity = self.body(compound, Motion::Driven, immovable(), pose, shown);
+        self.pass_through(entity);
+        Ok(entity)
+    }
+
+    /// Lets a body that was just made pass through everything, until the game puts it to use.
+    fn pass_through(&mut self, entity: Entity) {
         let id = self
             .ecs
             .get::<&Physical>(entity)
             .expect("it was just made")
             .0;
         self.world.set_collides(id, false);
-        Ok(entity)
     }
 
     fn add(&mut self, entity: Entity, components: impl hecs::DynamicBundle) {

@@ -276,12 +276,4 @@ impl Shape {
             Kind::Cuboid { .. } | Kind::HalfSpace { .. } => false,
         }
     }
-
-    /// Radius of the shape where it is a ball [m].
-    pub fn sphere_radius(&self) -> Option<f64> {
-        match self.kind {
-            Kind::Sphere { radius } => Some(radius),
-            _ => None,
-        }
-    }
 }

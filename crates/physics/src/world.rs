@@ -1,12 +1,9 @@
 //! The world: bodies, what touches what, and the calls that change them from outside.
 
-use std::sync::Arc;
-
 use glam::DVec3;
 use thiserror::Error;
 
-use crate::body::{Body, BodyDef, Material, Motion};
-use crate::compound::Compound;
+use crate::body::{Body, BodyDef, Motion};
 use crate::pose::Pose;
 use crate::response::Response;
 use crate::step::pairs::Pairs;
@@ -240,21 +237,6 @@ impl World {
         body.motion = motion;
         body.set_velocity(linear, angular);
         self.targets[slot] = None;
-    }
-
-    /// Changes elasticity and friction rate.
-    pub fn set_material(&mut self, id: BodyId, material: Material) {
-        let slot = self.slot(id);
-        self.bodies[slot].material = material;
-        self.disturb(slot);
-    }
-
-    /// Changes the surface; mass and centre of mass stay.
-    pub fn set_compound(&mut self, id: BodyId, compound: Arc<Compound>) {
-        let slot = self.slot(id);
-        self.disturb(slot);
-        self.bodies[slot].compound = compound;
-        self.renew(slot);
     }
 
     /// Whether the body takes part in collisions; one that does not passes through everything.
