@@ -1,67 +1,16 @@
-//! One rigid body: its state and its motion between contacts.
+//! One rigid body: its state, and how velocities, momenta and impulses act on it.
+
+mod def;
+mod motion;
 
 use std::sync::Arc;
 
 use glam::{DMat3, DQuat, DVec3};
 
-use crate::compound::{Compound, Symmetry};
+use crate::compound::Compound;
 use crate::pose::Pose;
 
-/// Mass and principal moments; properties of the object, not of the shape that stands in for it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MassProperties {
-    /// Mass [kg].
-    pub mass: f64,
-    /// Moments of inertia about the body's x, y and z axes through the centre of mass [kg m2].
-    pub inertia: DVec3,
-}
-
-impl MassProperties {
-    /// Whether a body can have these: all positive and finite.
-    pub fn is_valid(&self) -> bool {
-        let positive = |x: f64| x > 0.0 && x.is_finite();
-        positive(self.mass) && self.inertia.to_array().into_iter().all(positive)
-    }
-}
-
-/// The paper's coefficients of one object; a pair of objects uses the products (§2.2).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Material {
-    /// Elasticity, 0 to 1.
-    pub elasticity: f64,
-    /// Friction rate as the paper defines it, 0 to 1; not a Coulomb coefficient.
-    pub friction_rate: f64,
-}
-
-/// Who moves a body.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Motion {
-    /// Nobody: part of the building.
-    Fixed,
-    /// The caller, through [`crate::World::drive_to`]; it pushes others and nothing pushes it.
-    Driven,
-    /// The laws of physics.
-    Dynamic,
-}
-
-/// What a body starts with.
-#[derive(Clone, Debug)]
-pub struct BodyDef {
-    /// Surface, in the body frame (origin at the centre of mass).
-    pub compound: Arc<Compound>,
-    /// Who moves it.
-    pub motion: Motion,
-    /// Mass and inertia; used while the body is `Dynamic`.
-    pub mass: MassProperties,
-    /// Elasticity and friction rate.
-    pub material: Material,
-    /// `world_from_body`.
-    pub pose: Pose,
-    /// Velocity of the centre of mass [m/s], world frame.
-    pub linear_velocity: DVec3,
-    /// Angular velocity [rad/s], world frame.
-    pub angular_velocity: DVec3,
-}
+pub use def::{BodyDef, MassProperties, Material, Motion};
 
 /// A body in a world. Read it here, change it through the world.
 #[derive(Clone, Debug)]
@@ -253,6 +202,7 @@ impl Body {
         self.reach == 0.0 && !self.fresh
     }
 
+    /// Gives it velocities of its centre of mass [m/s] and of turning [rad/s], world frame; a fixed body keeps none.
     pub(crate) fn set_velocity(&mut self, linear: DVec3, angular: DVec3) {
         self.halt();
         match self.motion {
@@ -264,6 +214,15 @@ impl Body {
             Motion::Driven => (self.linear, self.turning) = (linear, angular),
             Motion::Fixed => {}
         }
+    }
+
+    /// Brings the body to rest where it is.
+    pub(crate) fn halt(&mut self) {
+        self.linear = DVec3::ZERO;
+        self.momentum = DVec3::ZERO;
+        self.turning = DVec3::ZERO;
+        self.acceleration = DVec3::ZERO;
+        self.bend = (DVec3::ZERO, DVec3::ZERO);
     }
 
     pub(crate) fn inv_mass(&self) -> f64 {
@@ -304,152 +263,4 @@ impl Body {
             self.momentum += arm.cross(impulse);
         }
     }
-}
-
-/// Bounds of how the surface moves, whatever the shape: what certificates are made of.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Sweep {
-    /// Fastest that turning carries a surface point [m/s].
-    pub turning: f64,
-    /// Largest acceleration of a surface point [m/s2].
-    pub acceleration: f64,
-}
-
-impl Body {
-    /// Bounds for the current motion.
-    pub(crate) fn sweep(&self) -> Sweep {
-        let radius = self.compound.bounding_radius();
-        let (total, across) = self.turning_rates();
-        let turning = if across == 0.0 { 0.0 } else { across * radius };
-        let bend = if across == 0.0 {
-            0.0
-        } else {
-            total * across * radius
-        };
-        Sweep {
-            turning,
-            acceleration: bend + self.acceleration.length(),
-        }
-    }
-
-    /// Rate of turning, and the part of it that moves the surface [rad/s].
-    ///
-    /// A turn of an axisymmetric body about its own axis does not move its surface: only the part of the precession
-    /// across the axis counts.
-    fn turning_rates(&self) -> (f64, f64) {
-        let symmetry = self.compound.symmetry();
-        if symmetry == Symmetry::Full {
-            return (0.0, 0.0);
-        }
-        match self.motion {
-            Motion::Fixed => (0.0, 0.0),
-            Motion::Driven => (self.turning.length(), self.turning.length()),
-            Motion::Dynamic => {
-                let i = self.mass.inertia;
-                if symmetry == Symmetry::Axis && i.x == i.z {
-                    let axis = self.rotation * DVec3::Y;
-                    let across = self.momentum - axis * axis.dot(self.momentum);
-                    (self.momentum.length() / i.x, across.length() / i.x)
-                } else {
-                    let rate = self.momentum.length() / i.min_element();
-                    (rate, rate)
-                }
-            }
-        }
-    }
-
-    /// Recomputes reach and end pose for the rest of a step of `dt`, after a change of velocity.
-    pub(crate) fn look_ahead(&mut self, dt: f64) {
-        let rest = dt - self.clock;
-        if (self.linear, self.momentum, self.turning, self.acceleration)
-            == (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO)
-        {
-            self.reach = 0.0;
-            self.end = self.pose();
-            return;
-        }
-        let sweep = self.sweep();
-        self.reach = (self.linear.length() + sweep.turning) * rest
-            + 0.5 * self.acceleration.length() * rest * rest;
-        self.end = self.pose_at(dt);
-    }
-
-    /// Pose at time `t` [s] of the step, exact for free flight of an axisymmetric or a driven body.
-    pub(crate) fn pose_at(&self, t: f64) -> Pose {
-        let dt = t - self.clock;
-        if dt == 0.0 || self.motion == Motion::Fixed || self.frozen {
-            return self.pose();
-        }
-        let position = self.position + self.linear * dt + self.acceleration * (0.5 * dt * dt);
-        let rotation = match self.motion {
-            Motion::Driven => turn(self.turning * dt) * self.rotation,
-            _ if self.momentum == DVec3::ZERO => self.rotation,
-            _ => self.tumbled(dt),
-        };
-        Pose::new(position, rotation.normalize())
-    }
-
-    /// Torque-free rotation for `dt` [s].
-    fn tumbled(&self, dt: f64) -> DQuat {
-        let i = self.mass.inertia;
-        if i.x == i.z {
-            // Closed form: precession about the angular momentum, after a spin about the body's own axis.
-            let along = (self.rotation.conjugate() * self.momentum).y;
-            let spin = along * (1.0 / i.y - 1.0 / i.x) * dt;
-            let precession = turn(self.momentum * (dt / i.x));
-            return precession * self.rotation * turn(DVec3::Y * spin);
-        }
-        // Three exact turns about the principal axes, symmetric in time: keeps the momentum, energy to O(dt^2).
-        let mut rotation = self.rotation;
-        let order = [
-            (DVec3::X, i.x, 0.5),
-            (DVec3::Y, i.y, 0.5),
-            (DVec3::Z, i.z, 1.0),
-        ];
-        for (axis, inertia, share) in order.into_iter().chain([order[1], order[0]]) {
-            let rate = (rotation.conjugate() * self.momentum).dot(axis) / inertia;
-            rotation *= turn(axis * (rate * share * dt));
-        }
-        rotation
-    }
-
-    /// Brings the state to time `t` [s] of the step.
-    pub(crate) fn advance(&mut self, t: f64, dt: f64) {
-        if t <= self.clock {
-            return;
-        }
-        if self.reach > 0.0 {
-            let elapsed = t - self.clock;
-            let speed = self.linear.length() + self.sweep().turning;
-            self.path += elapsed * (speed + 0.5 * self.acceleration.length() * elapsed);
-            let pose = if t == dt { self.end } else { self.pose_at(t) };
-            self.position = pose.position;
-            self.rotation = pose.rotation;
-            self.linear += self.acceleration * (t - self.clock);
-        }
-        self.clock = t;
-    }
-
-    /// Brings the body to rest where it is.
-    pub(crate) fn halt(&mut self) {
-        self.linear = DVec3::ZERO;
-        self.momentum = DVec3::ZERO;
-        self.turning = DVec3::ZERO;
-        self.acceleration = DVec3::ZERO;
-        self.bend = (DVec3::ZERO, DVec3::ZERO);
-    }
-}
-
-/// Rotation by the vector `v` [rad].
-///
-/// Below 0.2 rad through the series of tan(|v|/2), right to 1e-10 relative: no sine, and any angle about the
-/// angular momentum keeps momentum and energy exactly.
-pub(crate) fn turn(v: DVec3) -> DQuat {
-    let square = v.length_squared();
-    if square > 0.04 {
-        return DQuat::from_scaled_axis(v);
-    }
-    let series = 0.5 + square * (1.0 / 24.0 + square * (1.0 / 240.0 + square * (17.0 / 40320.0)));
-    let h = v * series;
-    DQuat::from_xyzw(h.x, h.y, h.z, 1.0).normalize()
 }

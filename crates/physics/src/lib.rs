@@ -5,8 +5,8 @@
 //!
 //! **A step**, `World::step`, in five lines:
 //! 1. Lasting contacts are answered together: half of gravity's kick, the contacts, and again (`step/rest.rs`).
-//! 2. Bodies in flight follow their parabola and turn as torque-free bodies do, in closed form (`body.rs`).
-//! 3. The next time at which two parts touch is found by advancing along separating normals (`step/search.rs`).
+//! 2. Bodies in flight follow their parabola and turn as torque-free bodies do, in closed form (`body/motion.rs`).
+//! 3. The next time at which two parts touch is found by advancing along separating normals (`step/approach.rs`).
 //! 4. There and then the impact law answers, at that contact and at those it disturbs (`step/events.rs`); back to 3.
 //! 5. At the end of the step bodies at rest fall asleep (`step/sleep.rs`).
 //!

@@ -2,6 +2,7 @@
 
 pub(crate) mod pairs;
 
+mod approach;
 mod events;
 mod rest;
 mod search;

@@ -1,0 +1,64 @@
+//! What a body is made of and starts with.
+
+use std::sync::Arc;
+
+use glam::DVec3;
+
+use crate::compound::Compound;
+use crate::pose::Pose;
+
+/// Mass and principal moments; properties of the object, not of the shape that stands in for it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MassProperties {
+    /// Mass [kg].
+    pub mass: f64,
+    /// Moments of inertia about the body's x, y and z axes through the centre of mass [kg m2].
+    pub inertia: DVec3,
+}
+
+impl MassProperties {
+    /// Whether a body can have these: all positive and finite.
+    pub fn is_valid(&self) -> bool {
+        let positive = |x: f64| x > 0.0 && x.is_finite();
+        positive(self.mass) && self.inertia.to_array().into_iter().all(positive)
+    }
+}
+
+/// The paper's coefficients of one object; a pair of objects uses the products (§2.2).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Material {
+    /// Elasticity, 0 to 1.
+    pub elasticity: f64,
+    /// Friction rate as the paper defines it, 0 to 1; not a Coulomb coefficient.
+    pub friction_rate: f64,
+}
+
+/// Who moves a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Motion {
+    /// Nobody: part of the building.
+    Fixed,
+    /// The caller, through [`crate::World::drive_to`]; it pushes others and nothing pushes it.
+    Driven,
+    /// The laws of physics.
+    Dynamic,
+}
+
+/// What a body starts with.
+#[derive(Clone, Debug)]
+pub struct BodyDef {
+    /// Surface, in the body frame (origin at the centre of mass).
+    pub compound: Arc<Compound>,
+    /// Who moves it.
+    pub motion: Motion,
+    /// Mass and inertia; used while the body is `Dynamic`.
+    pub mass: MassProperties,
+    /// Elasticity and friction rate.
+    pub material: Material,
+    /// `world_from_body`.
+    pub pose: Pose,
+    /// Velocity of the centre of mass [m/s], world frame.
+    pub linear_velocity: DVec3,
+    /// Angular velocity [rad/s], world frame.
+    pub angular_velocity: DVec3,
+}

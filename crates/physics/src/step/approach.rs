@@ -1,0 +1,277 @@
+//! When will two parts touch: conservative advancement along the separating normal.
+//!
+//! For a fixed normal n the gap `s_n(t)` between the tangent planes is a lower bound of the distance at every time.
+//! Each point of a body moves with an acceleration of at most c, so between two times with `s_n = s0, s1`
+//! `s_n >= lerp(s0, s1) - c (t - t0) (t1 - t) / 2`, kinks of the shape included. Two evaluations so prove most pairs
+//! apart for the whole step; otherwise the root of `s_n` is the next time to look, with a new n.
+
+use glam::DVec3;
+
+use super::pairs::Key;
+use super::touch::{Frame, place};
+use super::{CONTACT, SINK};
+use crate::body::Body;
+use crate::compound::Part;
+use crate::query::{Placed, distance_to_point, gap_along};
+use crate::world::World;
+
+/// Most searches for one pair of parts in a step.
+const SEARCHES: u32 = 40;
+/// A dip between two times that is no deeper than this is not looked for [m].
+const DIP: f64 = 2e-6;
+/// Bodies that overlap and part slower than this are in contact [m/s].
+const PARTING: f64 = 5e-3;
+/// Slower approach than this is none [m/s].
+const APPROACH: f64 = 1e-9;
+
+/// What the search learnt about a pair of parts.
+pub(crate) struct Found {
+    /// When they touch, if they do before the end of the step [s].
+    pub time: Option<f64>,
+    pub normal: DVec3,
+    /// Proven gap at the start of the search [m].
+    pub gap: f64,
+    /// Times looked at.
+    pub looks: u32,
+}
+
+/// Two parts on their way through a step: proven apart until `time`.
+pub(crate) struct Approach<'a> {
+    world: &'a World,
+    bodies: (&'a Body, &'a Body),
+    parts: (&'a Part, &'a Part),
+    /// Whether a contact of the two lasts: it then may sink a little.
+    touching: bool,
+    /// Length of the step [s].
+    dt: f64,
+    /// Where the parts are at the end of the step.
+    ends: (Placed<'a>, Placed<'a>),
+    /// Bound c of the acceleration of one surface against the other [m/s2].
+    bend: f64,
+    time: f64,
+    /// Time up to which the gap along `normal` is examined next [s].
+    end: f64,
+    /// Where the parts are at `time`.
+    placed: (Placed<'a>, Placed<'a>),
+    normal: DVec3,
+    /// Gap along `normal` at `time` [m].
+    gap: f64,
+    /// Largest gap that was found where the search began [m].
+    proven: f64,
+    /// Whether `normal` was found at `time`, and is not an earlier one.
+    fresh: bool,
+}
+
+/// What the gap along one normal tells.
+enum Bound {
+    /// They are apart to the end of the step.
+    Apart,
+    /// Nothing; half the time may tell more.
+    Unclear,
+    /// They are apart until this time, when a new normal is needed [s].
+    Until(f64),
+    /// They touch at this time [s].
+    Contact(f64),
+}
+
+impl<'a> Approach<'a> {
+    /// Earliest contact after `t0` of the two parts that `key` names, in a step of `dt` [s].
+    pub(crate) fn search(
+        world: &'a World,
+        key: Key,
+        (t0, dt): (f64, f64),
+        starts: &(Frame, Frame),
+        ends: &(Frame, Frame),
+    ) -> Found {
+        let known = world.pairs.part(key);
+        let bodies = (&world.bodies[key.a as usize], &world.bodies[key.b as usize]);
+        let parts = (
+            &bodies.0.compound.parts()[known.part_a as usize],
+            &bodies.1.compound.parts()[known.part_b as usize],
+        );
+        let placed = (starts.0.place(parts.0), starts.1.place(parts.1));
+        if !known.touching {
+            let rough = part_gap(&placed.0, parts.0, &placed.1, parts.1);
+            if rough > bodies.0.reach + bodies.1.reach {
+                return Found {
+                    time: None,
+                    normal: known.normal,
+                    gap: rough,
+                    looks: 1,
+                };
+            }
+        }
+        let gap = if known.normal == DVec3::ZERO {
+            0.0
+        } else {
+            gap_along(&placed.0, &placed.1, known.normal)
+        };
+        let approach = Approach {
+            world,
+            bodies,
+            parts,
+            touching: known.touching,
+            dt,
+            ends: (ends.0.place(parts.0), ends.1.place(parts.1)),
+            bend: bodies.0.sweep().acceleration + bodies.1.sweep().acceleration,
+            time: t0,
+            end: dt,
+            placed,
+            normal: known.normal,
+            gap,
+            proven: gap,
+            fresh: false,
+        };
+        approach.advance()
+    }
+
+    /// Goes from one time at which the parts are proven apart to the next.
+    fn advance(mut self) -> Found {
+        let stale = self.gap <= CONTACT && !self.touching;
+        if stale || self.normal == DVec3::ZERO {
+            let point = self.look();
+            self.proven = self.proven.max(self.gap);
+            if self.gap <= CONTACT && !self.touching && self.closing(point) {
+                return self.found(Some(self.time), 1);
+            }
+        }
+        for looks in 1..=SEARCHES {
+            match self.bound() {
+                Bound::Apart => return self.found(None, looks),
+                Bound::Contact(time) => return self.found(Some(time), looks),
+                Bound::Unclear => self.end = 0.5 * (self.time + self.end),
+                Bound::Until(time) => {
+                    (self.time, self.end) = (time, self.dt);
+                    self.placed = self.placed_at(time);
+                    let point = self.look();
+                    if self.gap <= CONTACT && (self.touching || self.closing(point)) {
+                        return self.found(Some(time), looks);
+                    }
+                }
+            }
+        }
+        self.found(Some(self.time), SEARCHES)
+    }
+
+    fn found(&self, time: Option<f64>, looks: u32) -> Found {
+        Found {
+            time,
+            normal: self.normal,
+            gap: self.proven,
+            looks,
+        }
+    }
+
+    /// What the gap along `normal` between `time` and `end` proves.
+    fn bound(&self) -> Bound {
+        // A lasting contact may sink a little; one that just separated starts from where it is.
+        let floor = if self.touching || self.gap <= CONTACT {
+            self.gap.min(0.0) - SINK
+        } else {
+            0.0
+        };
+        let at = |t: f64| {
+            let (a, b) = if t == self.dt {
+                self.ends
+            } else {
+                self.placed_at(t)
+            };
+            gap_along(&a, &b, self.normal) - floor
+        };
+        let (s0, s1) = (self.gap - floor, at(self.end));
+        if s1 > 0.0 {
+            let span = self.end - self.time;
+            let dip = 0.125 * self.bend * span * span - s0.min(s1);
+            return if dip < DIP && self.end == self.dt {
+                Bound::Apart
+            } else if dip < DIP {
+                Bound::Until(self.end)
+            } else {
+                Bound::Unclear
+            };
+        }
+        let root = last_apart(&at, (self.time, s0), (self.end, s1));
+        if self.fresh && floor != 0.0 {
+            Bound::Contact(root)
+        } else if self.fresh && root <= self.time {
+            // The bound itself starts at contact, and a new normal would be the same.
+            Bound::Contact(self.time)
+        } else {
+            Bound::Until(root)
+        }
+    }
+
+    /// Finds normal and gap at `time`; returns the point between the surfaces [m].
+    fn look(&mut self) -> DVec3 {
+        let found = self
+            .world
+            .search(&self.placed.0, &self.placed.1, self.normal);
+        (self.normal, self.gap, self.fresh) = (found.normal, found.gap, true);
+        (found.point_a + found.point_b) * 0.5
+    }
+
+    fn placed_at(&self, t: f64) -> (Placed<'a>, Placed<'a>) {
+        (
+            place(self.parts.0, &self.bodies.0.pose_at(t)),
+            place(self.parts.1, &self.bodies.1.pose_at(t)),
+        )
+    }
+
+    /// Whether the bodies, at `time`, approach along `normal` at `point`, or begin to, or overlap and do not part.
+    fn closing(&self, point: DVec3) -> bool {
+        let (a, b) = self.bodies;
+        let t = self.time;
+        let velocity = |body: &Body| {
+            let pose = body.pose_at(t);
+            let linear = body.linear
+                + body.acceleration * (t - body.clock)
+                + body.bend.0 * (t - body.middle);
+            linear + body.angular_velocity().cross(point - pose.position)
+        };
+        let speed = self.normal.dot(velocity(a) - velocity(b));
+        let bend = a.acceleration + a.bend.0 - b.acceleration - b.bend.0;
+        speed > APPROACH
+            || (speed > -1e3 * APPROACH && self.normal.dot(bend) > 0.0)
+            || (self.gap < -SINK && speed > -PARTING)
+    }
+}
+
+/// Lower bound of the gap between two parts.
+fn part_gap(a: &Placed, part_a: &Part, b: &Placed, part_b: &Part) -> f64 {
+    let apart = (b.position - a.position).length() - part_a.radius - part_b.radius;
+    if apart > 0.0 {
+        return apart;
+    }
+    if part_a.radius <= part_b.radius {
+        distance_to_point(b, a.position).map_or(apart, |d| d - part_a.radius)
+    } else {
+        distance_to_point(a, b.position).map_or(apart, |d| d - part_b.radius)
+    }
+}
+
+/// Latest time found before the gap `at` falls to zero between `low` (apart) and `high` (not), by regula falsi.
+fn last_apart(at: &impl Fn(f64) -> f64, low: (f64, f64), high: (f64, f64)) -> f64 {
+    let ((mut t0, mut s0), (mut t1, mut s1)) = (low, high);
+    if s0 <= 0.0 {
+        return t0;
+    }
+    let mut weight = (s0, s1);
+    for i in 0..40 {
+        if s0 <= 0.5 * CONTACT || t1 - t0 < 1e-12 {
+            break;
+        }
+        let mut t = t0 + (t1 - t0) * weight.0 / (weight.0 - weight.1);
+        if i % 4 == 3 || !(t > t0 && t < t1) {
+            t = 0.5 * (t0 + t1);
+        }
+        let s = at(t);
+        if s > 0.0 {
+            (t0, s0) = (t, s);
+            weight = (s0, 0.5 * weight.1);
+        } else {
+            (t1, s1) = (t, s);
+            weight = (0.5 * weight.0, s1);
+        }
+    }
+    t0
+}
