@@ -137,7 +137,8 @@ fn draw(state: &State, settings: RendererSettings) -> [RgbImage; 2] {
     let gpu =
         Gpu::new(BackendChoice::Auto).expect("a graphics driver: install mesa-vulkan-drivers");
     let mut renderer = Renderer::new(&gpu, settings).expect("plain settings");
-    let stock = Stock::load(&mut renderer, root).expect("the project's assets");
+    let stock =
+        Stock::load(&mut renderer, root, &conditions().lobby).expect("the project's assets");
     let scene = convert::scene(&state.visible, &stock, false);
     let display = &conditions().lobby.display;
     let eyes = match state.head {

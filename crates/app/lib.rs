@@ -17,6 +17,7 @@ pub mod random;
 pub mod rehearsal;
 pub mod replay;
 pub mod root;
+pub mod scenery;
 pub mod session;
 pub mod window;
 

@@ -63,7 +63,7 @@ impl Painter {
         let gpu = Gpu::new(BackendChoice::Auto).context("cannot draw")?;
         let mut renderer =
             Renderer::new(&gpu, RendererSettings::default()).context("cannot draw")?;
-        let stock = Stock::load(&mut renderer, root)?;
+        let stock = Stock::load(&mut renderer, root, config)?;
         let text = TextPainter::new(&gpu);
         Ok(Painter {
             renderer,

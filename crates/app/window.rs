@@ -166,7 +166,7 @@ impl Shell {
             .context("cannot draw into the window")?;
         let mut renderer =
             Renderer::new(&gpu, RendererSettings::default()).context("cannot draw")?;
-        let stock = Stock::load(&mut renderer, &self.root)?;
+        let stock = Stock::load(&mut renderer, &self.root, &setup.conditions.lobby)?;
         let overlay = Overlay::new(TextPainter::new(&gpu));
         // Last: nothing is written before everything else works.
         let session = Session::start(setup)?;

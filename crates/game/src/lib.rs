@@ -113,6 +113,14 @@ fn differing(condition: &Config, lobby: &Config) -> Option<&'static str> {
         ("start", condition.start != lobby.start),
         ("rack", condition.rack != lobby.rack),
         ("desk", condition.desk != lobby.desk),
+        (
+            "the diameter of the balls",
+            !condition
+                .balls
+                .iter()
+                .map(|ball| ball.diameter_m)
+                .eq(lobby.balls.iter().map(|ball| ball.diameter_m)),
+        ),
         ("tracking", condition.tracking != lobby.tracking),
         ("display", condition.display != lobby.display),
         ("participant", condition.participant != lobby.participant),

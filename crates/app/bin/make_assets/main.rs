@@ -1,17 +1,15 @@
-//! Makes the meshes and textures in `assets/` from `config/default.toml` and the pin's profile.
+//! Makes the meshes and textures in `assets/` from the pin's profile. Scenery is built by the program itself (`scenery`).
 //!
 //!     cargo run --bin make-assets             writes them
 //!     cargo run --bin make-assets -- --check  says which differ from what it would write, and fails if any does
 //!
 //! They are committed, so that the program needs no generator and a reviewer sees what changes.
 
-mod alley;
-mod mesh;
 mod pieces;
 mod textures;
 
 use anyhow::{Context, Result, bail};
-use game::Config;
+use bowling_app::scenery::{BOARDS_IN_IMAGE, mesh::cuboid};
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
@@ -47,23 +45,21 @@ fn main() -> Result<()> {
 
 /// Every generated file: its path in `assets/` and its bytes.
 fn assets(root: &Path) -> Result<Vec<(PathBuf, Vec<u8>)>> {
-    let config = Config::load(&root.join("config"), "alley", None, &[])?;
     let source = root.join("assets/source/pin_profile.csv");
     let csv = std::fs::read_to_string(&source)
         .with_context(|| format!("cannot read {}", source.display()))?;
     let profile = pieces::read_profile(&csv).with_context(|| source.display().to_string())?;
 
     let mut files = Vec::new();
-    let mut meshes = vec![
+    let meshes = [
         ("pin", pieces::pin(&profile)),
         ("ball", pieces::ball()),
         ("hand_open", pieces::hand(0.0)),
         ("hand_closed", pieces::hand(1.0)),
         ("button_round", pieces::button(true)),
         ("button_square", pieces::button(false)),
-        ("box", mesh::cuboid(glam::Vec3::ONE)),
+        ("box", cuboid(glam::Vec3::ONE)),
     ];
-    meshes.extend(alley::meshes(&config));
     for (name, mesh) in meshes {
         files.push((
             PathBuf::from(format!("meshes/{name}.obj")),
@@ -71,11 +67,12 @@ fn assets(root: &Path) -> Result<Vec<(PathBuf, Vec<u8>)>> {
         ));
     }
 
-    let boards = config.lane.boards;
+    let boards = BOARDS_IN_IMAGE;
+    let (_, height) = *profile.last().expect("read_profile wants three rows");
     let textures = [
         ("lane_boards", textures::boards(boards, true)),
         ("approach_boards", textures::boards(boards, false)),
-        ("pin", textures::pin(config.pin.height_m as f32)),
+        ("pin", textures::pin(height)),
         (
             "ball_blue",
             textures::ball([22.0, 38.0, 96.0], [92.0, 140.0, 214.0], 5),

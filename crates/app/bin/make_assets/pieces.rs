@@ -1,7 +1,7 @@
 //! The things one can touch: pins, ball, hand, buttons.
 
-use crate::mesh::{Mesh, capsule, cuboid, drum, lathe, sphere};
 use anyhow::{Context, Result, ensure};
+use bowling_app::scenery::mesh::{Mesh, capsule, cuboid, drum, lathe, sphere};
 use glam::{Affine3A, Quat, Vec3};
 use std::f32::consts::{FRAC_PI_2, PI};
 

@@ -1,20 +1,27 @@
-//! Triangle meshes: the few builders that the alley needs, and their OBJ text.
+//! Triangle meshes: the few builders that the alley needs, their OBJ text, and what the renderer takes.
 
-use glam::{Affine3A, Mat3, Vec2, Vec3};
 use std::fmt::Write;
 
+use glam::{Affine3A, Mat3, Vec2, Vec3};
+use renderer::MeshData;
+
 /// One corner of a triangle: place [m], unit normal, texture coordinate (0,0 at the image's lower left).
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Vertex {
+    /// Place in the mesh's frame [m].
     pub position: Vec3,
+    /// Unit normal, away from the solid.
     pub normal: Vec3,
+    /// Texture coordinates, v upwards from the image's lower edge.
     pub uv: Vec2,
 }
 
 /// Triangles over shared vertices, counter-clockwise from outside.
-#[derive(Clone, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Mesh {
+    /// The corners.
     pub vertices: Vec<Vertex>,
+    /// Three indices into `vertices` each.
     pub triangles: Vec<[u32; 3]>,
 }
 
@@ -62,6 +69,19 @@ impl Mesh {
         );
         self.triangles
             .extend([[base, base + 1, base + 2], [base, base + 2, base + 3]]);
+    }
+
+    /// The same for the renderer, whose images run downwards.
+    pub fn to_data(&self) -> MeshData {
+        let vertices = self.vertices.iter().map(|v| renderer::Vertex {
+            position: v.position,
+            normal: v.normal,
+            uv: Vec2::new(v.uv.x, 1.0 - v.uv.y),
+        });
+        MeshData {
+            vertices: vertices.collect(),
+            indices: self.triangles.iter().flatten().copied().collect(),
+        }
     }
 
     /// Wavefront OBJ with six decimals: a micrometre, far below what can be seen.
