@@ -3,7 +3,7 @@
 use image::RgbaImage;
 
 use crate::passes::lit::COLOR_FORMAT;
-use crate::{Gpu, RenderError, Renderer, Scene, View};
+use crate::{Gpu, RenderError, Renderer, Scene, View, texture};
 
 impl Renderer {
     /// Draws the scene for each view and brings the images back, sRGB, first row uppermost.
@@ -40,23 +40,11 @@ impl Renderer {
 
 /// A texture that an eye can be drawn into or an image written to, and that is shown or copied from.
 pub(crate) fn color_texture(gpu: &Gpu, width: u32, height: u32) -> wgpu::Texture {
-    gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some("eye"),
-        size: wgpu::Extent3d {
-            width,
-            height,
-            depth_or_array_layers: 1,
-        },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: COLOR_FORMAT,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-            | wgpu::TextureUsages::COPY_SRC
-            | wgpu::TextureUsages::COPY_DST
-            | wgpu::TextureUsages::TEXTURE_BINDING,
-        view_formats: &[],
-    })
+    let usage = wgpu::TextureUsages::RENDER_ATTACHMENT
+        | wgpu::TextureUsages::COPY_SRC
+        | wgpu::TextureUsages::COPY_DST
+        | wgpu::TextureUsages::TEXTURE_BINDING;
+    texture::single(&gpu.device, "eye", [width, height], 1, COLOR_FORMAT, usage)
 }
 
 /// Brings images of four bytes per pixel back from the device.

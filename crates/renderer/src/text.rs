@@ -3,7 +3,7 @@
 use image::RgbaImage;
 
 use crate::offscreen::Readback;
-use crate::{Gpu, RenderError};
+use crate::{Gpu, RenderError, texture};
 
 /// egui's colours are sRGB bytes and are blended as such, so the target must not encode.
 const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
@@ -181,20 +181,8 @@ impl TextPainter {
             size_in_pixels: [width, height],
             pixels_per_point: 1.0,
         };
-        let target = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("text"),
-            size: wgpu::Extent3d {
-                width,
-                height,
-                depth_or_array_layers: 1,
-            },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: FORMAT,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
+        let target = texture::single(device, "text", [width, height], 1, FORMAT, usage);
         let view = target.create_view(&Default::default());
         let mut encoder = device.create_command_encoder(&Default::default());
         // The buffers are all there is to prepare: no custom painting, so no command buffers of its own.

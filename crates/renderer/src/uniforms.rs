@@ -3,7 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Mat4, Vec3, Vec4};
 
-use crate::scene::{Instance, MAX_LAMPS};
+use crate::passes::shadow::LightFrame;
+use crate::scene::{Instance, MAX_LAMPS, Scene};
 
 /// `Eye` in common.wgsl.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -37,6 +38,40 @@ pub(crate) struct LightingRaw {
     pub shadow_reach_m: f32,
     pub lamp_count: u32,
     pub lamps: [LampRaw; MAX_LAMPS],
+}
+
+impl LightingRaw {
+    /// Light of a scene: the shadowing one as `light` frames it, and the lamps.
+    pub fn new(
+        scene: &Scene,
+        light: Option<&LightFrame>,
+        shadow_map_size: Option<[u32; 2]>,
+    ) -> Self {
+        let mut raw: Self = Zeroable::zeroed();
+        // Without a light its colour is black, and any direction will do.
+        raw.light_position = Vec4::Y;
+        raw.sky = Vec3::from(scene.sky).extend(0.0);
+        raw.ground = Vec3::from(scene.ground).extend(0.0);
+        if let (Some(frame), Some(light)) = (light, &scene.light) {
+            raw.light_clip_from_world = frame.clip_from_world;
+            raw.light_position = frame.position;
+            raw.light_axis = frame.axis;
+            raw.light_color = Vec3::from(light.color).extend(frame.inner_cosine);
+            if let Some(size) = shadow_map_size {
+                (raw.shadow_step_uv, raw.shadow_reach_m) = frame.filter(light.softness_m, size);
+            }
+        }
+        raw.lamp_count = scene.lamps.len() as u32;
+        for (raw, lamp) in raw.lamps.iter_mut().zip(&scene.lamps) {
+            *raw = LampRaw {
+                position: lamp.position,
+                range_m: lamp.range_m,
+                color: lamp.color,
+                padding: 0.0,
+            };
+        }
+        raw
+    }
 }
 
 /// `Picture` in present.wgsl.

@@ -5,7 +5,7 @@
 
 use super::{Batch, DEPTH_FORMAT, GpuMesh};
 use crate::shaders;
-use crate::texture::Texture;
+use crate::texture::{self, Texture};
 use crate::uniforms::LightingRaw;
 
 /// What the eyes are drawn into; the hardware encodes sRGB and blends and resolves in linear light.
@@ -31,22 +31,9 @@ pub(crate) struct Targets {
 
 impl Targets {
     pub fn new(device: &wgpu::Device, size: [u32; 2], samples: u32) -> Self {
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
         let attachment = |format| {
-            device
-                .create_texture(&wgpu::TextureDescriptor {
-                    label: Some("eye"),
-                    size: wgpu::Extent3d {
-                        width: size[0],
-                        height: size[1],
-                        depth_or_array_layers: 1,
-                    },
-                    mip_level_count: 1,
-                    sample_count: samples,
-                    dimension: wgpu::TextureDimension::D2,
-                    format,
-                    usage: wgpu::TextureUsages::RENDER_ATTACHMENT,
-                    view_formats: &[],
-                })
+            texture::single(device, "eye", size, samples, format, usage)
                 .create_view(&Default::default())
         };
         Self {
@@ -150,14 +137,10 @@ impl LitPass {
                     },
                 },
             })],
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &draw.targets.depth,
-                depth_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(1.0),
-                    store: wgpu::StoreOp::Discard,
-                }),
-                stencil_ops: None,
-            }),
+            depth_stencil_attachment: Some(super::depth_attachment(
+                &draw.targets.depth,
+                wgpu::StoreOp::Discard,
+            )),
             ..Default::default()
         });
         pass.set_pipeline(&self.pipeline);

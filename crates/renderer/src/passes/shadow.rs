@@ -5,7 +5,7 @@ use glam::{Mat3, Mat4, Vec3, Vec4};
 
 use super::{Batch, DEPTH_FORMAT, GpuMesh};
 use crate::scene::{Light, LightSource};
-use crate::{RenderError, shaders};
+use crate::{RenderError, shaders, texture};
 
 /// Taps of the filter along a side, `SHADOW_TAPS` in shadow_filter.wgsl.
 const TAPS: f32 = 3.0;
@@ -151,20 +151,8 @@ pub(crate) struct ShadowMap {
 
 impl ShadowMap {
     fn new(device: &wgpu::Device, size: [u32; 2]) -> Self {
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("shadow map"),
-            size: wgpu::Extent3d {
-                width: size[0],
-                height: size[1],
-                depth_or_array_layers: 1,
-            },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: DEPTH_FORMAT,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING,
-            view_formats: &[],
-        });
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+        let texture = texture::single(device, "shadow map", size, 1, DEPTH_FORMAT, usage);
         Self {
             view: texture.create_view(&Default::default()),
             size,
@@ -242,14 +230,10 @@ impl ShadowPass {
     ) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("shadow"),
-            depth_stencil_attachment: Some(wgpu::RenderPassDepthStencilAttachment {
-                view: &self.map.view,
-                depth_ops: Some(wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(1.0),
-                    store: wgpu::StoreOp::Store,
-                }),
-                stencil_ops: None,
-            }),
+            depth_stencil_attachment: Some(super::depth_attachment(
+                &self.map.view,
+                wgpu::StoreOp::Store,
+            )),
             ..Default::default()
         });
         pass.set_pipeline(&self.pipeline);

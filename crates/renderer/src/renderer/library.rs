@@ -1,0 +1,67 @@
+//! The meshes and textures that a renderer holds.
+
+use std::path::Path;
+
+use image::RgbaImage;
+
+use super::Renderer;
+use crate::passes::GpuMesh;
+use crate::scene::{MeshId, TextureId};
+use crate::texture::{self, Texture};
+use crate::{MeshData, RenderError};
+
+impl Renderer {
+    /// Takes a mesh.
+    ///
+    /// # Errors
+    /// If it has no triangles, an index out of range, or a number that is none.
+    pub fn add_mesh(&mut self, mesh: &MeshData) -> Result<MeshId, RenderError> {
+        mesh.check()?;
+        self.meshes.push(GpuMesh::new(&self.gpu.device, mesh));
+        Ok(MeshId(self.meshes.len() as u32 - 1))
+    }
+
+    /// Takes a mesh from an OBJ file, as [`MeshData::load_obj`] reads it.
+    ///
+    /// # Errors
+    /// One sentence with the file and, where one is to blame, the line.
+    pub fn load_obj(&mut self, path: &Path) -> Result<MeshId, RenderError> {
+        self.add_mesh(&MeshData::load_obj(path)?)
+    }
+
+    /// Takes a texture, sRGB, its first row uppermost.
+    ///
+    /// # Errors
+    /// If a side is zero or larger than the device holds.
+    pub fn add_texture(&mut self, image: &RgbaImage) -> Result<TextureId, RenderError> {
+        let texture = self.upload(image)?;
+        self.textures.push(texture);
+        Ok(TextureId(self.textures.len() as u32 - 1))
+    }
+
+    /// Takes a texture from a PNG or JPEG file.
+    ///
+    /// # Errors
+    /// One sentence with the file.
+    pub fn load_texture(&mut self, path: &Path) -> Result<TextureId, RenderError> {
+        self.add_texture(&texture::load_image(path)?)
+    }
+
+    /// Shows another image on a texture, for example a score board's; the size may differ.
+    ///
+    /// # Errors
+    /// If the texture is not this renderer's, or the image cannot be taken.
+    pub fn update_texture(&mut self, id: TextureId, image: &RgbaImage) -> Result<(), RenderError> {
+        let index = id.0 as usize;
+        match self.textures.get(index) {
+            None => return Err(RenderError::Texture("it is not this renderer's".to_owned())),
+            Some(texture) if texture.replace(&self.gpu, image) => {}
+            Some(_) => self.textures[index] = self.upload(image)?,
+        }
+        Ok(())
+    }
+
+    fn upload(&self, image: &RgbaImage) -> Result<Texture, RenderError> {
+        Texture::new(&self.gpu, &self.texture_layout, &self.sampler, image)
+    }
+}

@@ -1,0 +1,149 @@
+//! The renderer on a device that draws nothing: what it makes and what it refuses.
+
+use glam::{Mat4, Vec3};
+use image::{Rgba, RgbaImage};
+
+use super::*;
+use crate::scene::{Instance, Light, LightSource, Material, MeshId, TextureId};
+use crate::{BackendChoice, Fov, MeshData};
+
+fn renderer(settings: RendererSettings) -> Renderer {
+    let gpu = Gpu::new(BackendChoice::Noop).expect("the test backend needs no driver");
+    Renderer::new(&gpu, settings).expect("good settings")
+}
+
+fn view() -> View {
+    View::looking_at(Vec3::Z * 3.0, Vec3::ZERO, Fov::symmetric(1.0, 1.0))
+}
+
+fn instance(mesh: MeshId) -> Instance {
+    Instance {
+        mesh,
+        material: Material::new([0.5; 3]),
+        world_from_mesh: Mat4::IDENTITY,
+    }
+}
+
+fn sun() -> Light {
+    Light {
+        source: LightSource::Directional {
+            direction: Vec3::NEG_Y,
+            shadow_min: Vec3::splat(-2.0),
+            shadow_max: Vec3::splat(2.0),
+        },
+        color: [1.0; 3],
+        softness_m: 0.01,
+    }
+}
+
+/// Every pipeline, layout and bind group is checked by the validation of a device that draws nothing.
+#[test]
+fn every_pass_validates_on_a_device_without_pixels() {
+    for (shadow_size, light) in [(0, None), (0, Some(sun())), (256, Some(sun())), (256, None)] {
+        for samples in [1, 4] {
+            let mut renderer = renderer(RendererSettings {
+                samples,
+                shadow_size,
+            });
+            let mesh = renderer.add_mesh(&MeshData::quad(1.0, 1.0)).expect("good");
+            let scene = Scene {
+                instances: vec![instance(mesh); 100],
+                light,
+                ..Scene::default()
+            };
+            let images = renderer.render(&scene, &[view(), view()], 32, 16);
+            assert_eq!(images.expect("drawn").len(), 2);
+        }
+    }
+}
+
+#[test]
+fn shadows_off_make_no_pass_and_no_map() {
+    let mut renderer = renderer(RendererSettings {
+        samples: 1,
+        shadow_size: 0,
+    });
+    let scene = Scene {
+        light: Some(sun()),
+        ..Scene::default()
+    };
+    renderer.render(&scene, &[view()], 8, 8).expect("drawn");
+    assert!(renderer.shadow.is_none() && renderer.lit_shadowed.is_none());
+}
+
+#[test]
+fn instances_of_one_mesh_and_texture_are_one_batch() {
+    let mut renderer = renderer(RendererSettings::default());
+    let a = renderer.add_mesh(&MeshData::quad(1.0, 1.0)).expect("good");
+    let b = renderer.add_mesh(&MeshData::quad(2.0, 1.0)).expect("good");
+    let picture = RgbaImage::from_pixel(5, 3, Rgba([9; 4]));
+    let texture = renderer.add_texture(&picture).expect("good");
+    let mut scene = Scene::default();
+    for at in 0..12 {
+        let mut one = instance(if at % 2 == 0 { a } else { b });
+        if at % 3 == 0 {
+            one.material.texture = Some(texture);
+        }
+        scene.instances.push(one);
+    }
+    renderer.pack_instances(&scene);
+    assert_eq!(renderer.frame.batches.len(), 4);
+    let drawn: u32 = renderer.frame.batches.iter().map(|batch| batch.count).sum();
+    assert_eq!(drawn, 12);
+}
+
+#[test]
+fn bad_scenes_are_refused_in_a_sentence() {
+    let mut renderer = renderer(RendererSettings::default());
+    let mesh = renderer.add_mesh(&MeshData::quad(1.0, 1.0)).expect("good");
+    let mut reason = |instance: Instance| {
+        let scene = Scene {
+            instances: vec![instance],
+            ..Scene::default()
+        };
+        let error = renderer.render(&scene, &[view()], 8, 8);
+        error.expect_err("it is broken").to_string()
+    };
+    let mut bad = instance(MeshId(7));
+    assert!(reason(bad).contains("instance 0 uses a mesh"));
+    bad = instance(mesh);
+    bad.world_from_mesh.w_axis.x = f32::NAN;
+    assert!(reason(bad).contains("not a number"));
+    bad = instance(mesh);
+    bad.world_from_mesh = Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0));
+    assert!(reason(bad).contains("mirrors"));
+    bad = instance(mesh);
+    bad.material.texture = Some(TextureId(0));
+    assert!(reason(bad).contains("uses a texture"));
+}
+
+#[test]
+fn bad_settings_and_sizes_are_refused() {
+    let gpu = Gpu::new(BackendChoice::Noop).expect("the test backend needs no driver");
+    let with = |samples, shadow_size| {
+        Renderer::new(
+            &gpu,
+            RendererSettings {
+                samples,
+                shadow_size,
+            },
+        )
+    };
+    assert!(with(3, 0).is_err());
+    assert!(with(4, u32::MAX).is_err());
+    let mut renderer = with(4, 0).expect("good settings");
+    let error = renderer.render(&Scene::default(), &[view()], 0, 8);
+    assert!(error.expect_err("no pixels").to_string().contains("0 x 8"));
+}
+
+#[test]
+fn update_texture_takes_another_size() {
+    let mut renderer = renderer(RendererSettings::default());
+    let small = RgbaImage::from_pixel(4, 4, Rgba([1; 4]));
+    let id = renderer.add_texture(&small).expect("good");
+    renderer.update_texture(id, &small).expect("same size");
+    let large = RgbaImage::from_pixel(9, 2, Rgba([1; 4]));
+    renderer.update_texture(id, &large).expect("other size");
+    assert!(renderer.update_texture(TextureId(5), &small).is_err());
+    assert!(renderer.add_texture(&RgbaImage::new(0, 3)).is_err());
+}
