@@ -1,5 +1,6 @@
 //! Detection against closed forms and against a search that shares no code with it.
 
+#[path = "../support/mod.rs"]
 mod support;
 
 use glam::{DQuat, DVec3};
