@@ -11,6 +11,7 @@
 //! 5. At the end of the step bodies at rest fall asleep (`step/sleep.rs`).
 //!
 //! **Detection** (§2.1 of the paper) is in [`query`], usable without a world; **response** (§2.2) in [`response`].
+//! What the paper compared its detection with is in [`rival`].
 //!
 //! **Always.** Same calls, same bits: no clock, no randomness, no threads, no hash order, no sine but glam's `libm`. A
 //! clone of a [`World`] is a snapshot. Nothing panics on numbers: bad sizes are refused when a shape is made, and a
@@ -55,6 +56,7 @@ mod hash;
 mod pose;
 pub mod query;
 pub mod response;
+pub mod rival;
 mod shape;
 mod step;
 mod support;
