@@ -138,6 +138,25 @@ fn a_folder_that_cannot_be_written_is_named() {
     assert!(text.contains(&out) && text.contains("--out"), "{text}");
 }
 
+/// A limit of zero on the size of files stands for a full disk: nothing can be written, but files can be made.
+#[cfg(unix)]
+#[test]
+fn a_full_disk_leaves_nothing_behind() {
+    let outer = fresh_folder("full-disk");
+    let out = outer.join("new/session").display().to_string();
+    let output = std::process::Command::new("sh")
+        .args(["-c", "trap '' XFSZ; ulimit -f 0; exec \"$0\" \"$@\""])
+        .arg(env!("CARGO_BIN_EXE_bowling"))
+        .args(["play", "--offscreen", "--frames", "1", "--out", &out])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .expect("the program starts");
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{text}");
+    assert!(text.contains("journal.jsonl: is the disk full?"), "{text}");
+    assert_eq!(fs::read_dir(&outer).expect("there").count(), 0);
+}
+
 #[test]
 fn a_folder_without_a_recording_is_named() {
     let folder = fresh_folder("nothing").display().to_string();

@@ -4,11 +4,11 @@ use std::process::Output;
 use std::sync::OnceLock;
 
 use bowling_app::devices::script::Velocities;
-use bowling_app::journal::{self, Journal};
+use bowling_app::journal::{self, Journal, Recording};
 use bowling_app::pictures::Wanted;
 use bowling_app::rehearsal::rehearse;
 use bowling_app::session::{Session, Setup};
-use game::{Button, Conditions, Input, Tracked};
+use game::{Button, Conditions, Event, Input, Tracked};
 use glam::{DQuat, DVec3};
 use physics::Pose;
 
@@ -269,6 +269,57 @@ fn replay_shows_both_hashes_when_the_state_differs() {
     };
     journal.end(end).expect("writable");
     assert_refused(&replay(&folder), &["0123456789abcdef", &recorded.end.hash]);
+}
+
+#[test]
+fn replay_names_the_first_event_that_was_changed() {
+    let whole = journal::read(&recording().0.join("journal.jsonl")).expect("a journal");
+    let (index, (at, _)) = whole
+        .events
+        .iter()
+        .enumerate()
+        .find(|(_, (_, event))| event["event"] == "impact")
+        .expect("a ball hits something");
+    let number = format!("event {} ", index + 1);
+    let input = format!("after input {}", at + 1);
+    let mut faster = whole.events.clone();
+    faster[index].1["approach_speed"] = 99.5.into();
+    let mut late = whole.events.clone();
+    late[index].0 += 1;
+    let mut fewer = whole.events.clone();
+    fewer.truncate(index);
+    for (name, events, words) in [
+        (
+            "faster",
+            faster,
+            [number.as_str(), "approach_speed 99.5", &input],
+        ),
+        ("late", late, [number.as_str(), "\"impact\"", &input]),
+        (
+            "fewer",
+            fewer,
+            [number.as_str(), "no further event", &input],
+        ),
+    ] {
+        let folder = copy(&format!("event-{name}"));
+        write_journal(&folder, &whole, &events);
+        assert_refused(&replay(&folder), &words);
+    }
+}
+
+/// Writes a journal anew with other events, so that every line's check is right.
+fn write_journal(folder: &Path, recorded: &Recording, events: &[(usize, serde_json::Value)]) {
+    let path = folder.join("journal.jsonl");
+    fs::remove_file(&path).expect("writable");
+    let mut journal = Journal::create(&path, recorded.header.clone()).expect("writable");
+    for (index, input) in recorded.inputs.iter().enumerate() {
+        journal.input(input).expect("writable");
+        for (_, event) in events.iter().filter(|(at, _)| *at == index) {
+            let event: Event = serde_json::from_value(event.clone()).expect("an event");
+            journal.event(&event).expect("writable");
+        }
+    }
+    journal.end(recorded.end.clone()).expect("writable");
 }
 
 #[test]

@@ -50,10 +50,10 @@ fn append_pose(row: &mut String, pose: Option<Pose>) {
     }
 }
 
-/// Compares a table as it lies on disk with one line after another as it should be.
+/// Compares a table as it lies on disk, byte for byte, with one line after another as it should be.
 #[derive(Debug)]
 pub struct Comparison<'a> {
-    lines: std::str::Lines<'a>,
+    rest: &'a str,
     number: usize,
 }
 
@@ -64,7 +64,7 @@ impl<'a> Comparison<'a> {
     /// A sentence without the file's name when the heading differs.
     pub fn new(table: &'a str) -> Result<Self, String> {
         let mut comparison = Comparison {
-            lines: table.lines(),
+            rest: table,
             number: 0,
         };
         comparison.expect_line(&heading())?;
@@ -77,33 +77,47 @@ impl<'a> Comparison<'a> {
     /// A sentence with the line's number when it differs or is missing.
     pub fn expect_line(&mut self, expected: &str) -> Result<(), String> {
         self.number += 1;
-        match self.lines.next() {
-            Some(line) if line == expected => Ok(()),
-            Some(line) => Err(format!(
-                "line {}: the motion table does not agree with the journal: it says `{}` where the journal gives `{}`",
-                self.number,
-                first_difference(line, expected),
-                first_difference(expected, line)
-            )),
-            None => Err(format!(
+        if self.rest.is_empty() {
+            return Err(format!(
                 "line {}: the motion table ends here, but the journal goes on",
                 self.number
-            )),
+            ));
         }
+        let (line, rest) = match self.rest.split_once('\n') {
+            Some((line, rest)) if line == expected => {
+                self.rest = rest;
+                return Ok(());
+            }
+            Some(parts) => parts,
+            None => (self.rest, ""),
+        };
+        self.rest = rest;
+        if line.strip_suffix('\r').unwrap_or(line) == expected {
+            return Err(format!(
+                "line {}: the line's end was changed after it was recorded (a line ends with a single line feed)",
+                self.number
+            ));
+        }
+        Err(format!(
+            "line {}: the motion table does not agree with the journal: it says `{}` where the journal gives `{}`",
+            self.number,
+            first_difference(line, expected),
+            first_difference(expected, line)
+        ))
     }
 
     /// Makes sure that nothing follows.
     ///
     /// # Errors
     /// A sentence with the line's number when something does.
-    pub fn expect_end(mut self) -> Result<(), String> {
-        match self.lines.next() {
-            None => Ok(()),
-            Some(_) => Err(format!(
-                "line {}: the motion table goes on where the journal ends",
-                self.number + 1
-            )),
+    pub fn expect_end(self) -> Result<(), String> {
+        if self.rest.is_empty() {
+            return Ok(());
         }
+        Err(format!(
+            "line {}: the motion table goes on where the journal ends",
+            self.number + 1
+        ))
     }
 }
 
@@ -148,6 +162,20 @@ mod tests {
             problem.starts_with("line 3:") && problem.contains("`4`") && problem.contains("`5`"),
             "{problem}"
         );
+    }
+
+    #[test]
+    fn comparison_finds_other_line_ends() {
+        for (rows, line) in [("0.1\r\n0.2\n", 2), ("0.1\n0.2", 3)] {
+            let table = format!("{}\n{rows}", heading());
+            let mut comparison = Comparison::new(&table).expect("the heading agrees");
+            let problem = comparison
+                .expect_line("0.1")
+                .and_then(|()| comparison.expect_line("0.2"))
+                .expect_err("one line's end differs");
+            let start = format!("line {line}: the line's end was changed");
+            assert!(problem.starts_with(&start), "{problem}");
+        }
     }
 
     #[test]

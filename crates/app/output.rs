@@ -16,6 +16,8 @@ pub const MOTION: &str = "motion.tsv";
 #[derive(Debug)]
 pub struct OutputFolder {
     path: PathBuf,
+    /// The folders that were made for it, innermost first.
+    made: Vec<PathBuf>,
 }
 
 impl OutputFolder {
@@ -30,7 +32,6 @@ impl OutputFolder {
                 path.display()
             );
         }
-        let is_new = !path.exists();
         if fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_some()) {
             bail!(
                 "{} is not empty, and nothing in it is overwritten: choose a new or empty folder with --out",
@@ -43,17 +44,29 @@ impl OutputFolder {
                 path.display()
             )
         };
-        fs::create_dir_all(path).with_context(advice)?;
-        // Found out now rather than after a game.
-        let trial = Draft::create(path, "trial").with_context(advice);
-        if trial.is_err() && is_new {
-            // Nothing is in it, and a folder that cannot be removed is no worse than one that stays.
-            let _ = fs::remove_dir(path);
-        }
-        drop(trial?);
-        Ok(OutputFolder {
+        let missing = path.ancestors().take_while(|folder| !folder.exists());
+        let folder = OutputFolder {
             path: path.to_path_buf(),
-        })
+            made: missing.map(Path::to_path_buf).collect(),
+        };
+        // Found out now rather than after a game.
+        let trial = fs::create_dir_all(path)
+            .map_err(anyhow::Error::from)
+            .and_then(|()| Draft::create(path, "trial"))
+            .with_context(advice);
+        if let Err(error) = trial {
+            folder.abandon();
+            return Err(error);
+        }
+        Ok(folder)
+    }
+
+    /// Takes back the folders that were made for a session that could not begin.
+    pub fn abandon(self) {
+        for folder in &self.made {
+            // One that holds something, or refuses to go, is no worse than one that stays.
+            let _ = fs::remove_dir(folder);
+        }
     }
 
     /// Where it is.
@@ -237,6 +250,18 @@ mod tests {
         fs::write(folder.path().join(JOURNAL), "{}").expect("writable");
         let error = OutputFolder::create(folder.path()).expect_err("a recording is there");
         assert!(error.to_string().contains("never overwritten"), "{error}");
+    }
+
+    #[test]
+    fn abandon_removes_what_create_made_and_no_more() {
+        let outer = tempfile::tempdir().expect("a temporary folder");
+        let path = outer.path().join("new/deep");
+        OutputFolder::create(&path).expect("writable").abandon();
+        assert_eq!(fs::read_dir(outer.path()).expect("there").count(), 0);
+        OutputFolder::create(outer.path())
+            .expect("writable")
+            .abandon();
+        assert!(outer.path().exists());
     }
 
     #[test]

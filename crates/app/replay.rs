@@ -5,6 +5,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, bail};
 use game::{Button, EventKind, Game};
+use serde_json::Value;
 
 use crate::journal::{self, Recording};
 use crate::motion::{self, Comparison};
@@ -32,19 +33,24 @@ pub fn replay(folder: &Path) -> Result<()> {
         .context("cannot set up the recorded alley")?;
     let mut started = Vec::new();
     let mut table_problem = None;
-    for input in &recording.inputs {
+    let mut events = Vec::new();
+    for (index, input) in recording.inputs.iter().enumerate() {
         game.step(input);
         for event in game.events() {
             if let EventKind::GameStarted { button } = event.kind {
                 started.push(button);
             }
+            events.push((index, serde_json::to_value(event)?));
         }
         if table_problem.is_none() {
             table_problem = comparison.expect_line(&motion::row(&game, input)).err();
         }
     }
     check_result(&game, &started, &recording, folder)?;
-    // Only now: when the simulation itself went another way, that is the finding, not the table.
+    // Only now: when the simulation itself went another way, that is the finding, not what follows from it.
+    if let Some(problem) = event_difference(&recording.events, &events) {
+        bail!("{}: {problem}", folder.join(JOURNAL).display());
+    }
     if let Some(problem) = table_problem {
         return Err(in_table(problem));
     }
@@ -113,6 +119,42 @@ fn check_result(
     Ok(())
 }
 
+/// The first event that is not the same in the recording and in its replay, in a sentence.
+fn event_difference(recorded: &[(usize, Value)], replayed: &[(usize, Value)]) -> Option<String> {
+    let length = recorded.len().max(replayed.len());
+    let first = (0..length).find(|index| recorded.get(*index) != replayed.get(*index))?;
+    let (recorded, replayed) = (recorded.get(first), replayed.get(first));
+    let key = first_differing_key(recorded, replayed);
+    let says = |event: Option<&(usize, Value)>| match event {
+        None => "no further event".to_owned(),
+        Some((input, event)) => {
+            let detail = key.as_ref().map(|key| format!(", {key} {}", event[key]));
+            let (name, step) = (&event["event"], &event["step"]);
+            let detail = detail.unwrap_or_default();
+            format!("{name} at step {step} after input {}{detail}", input + 1)
+        }
+    };
+    Some(format!(
+        "event {} differs, so one was changed after it was recorded: the recording has {}, the replay {}",
+        first + 1,
+        says(recorded),
+        says(replayed)
+    ))
+}
+
+/// The first field, beside name and step, in which two events differ.
+fn first_differing_key(
+    recorded: Option<&(usize, Value)>,
+    replayed: Option<&(usize, Value)>,
+) -> Option<String> {
+    let fields = |event: Option<&(usize, Value)>| Some(event?.1.as_object()?.clone());
+    let (recorded, replayed) = (fields(recorded)?, fields(replayed)?);
+    let differs = |key: &&String| recorded.get(*key) != replayed.get(*key);
+    let is_detail = |key: &&String| !["event", "step"].contains(&key.as_str());
+    let mut keys = recorded.keys().chain(replayed.keys());
+    keys.find(|key| is_detail(key) && differs(key)).cloned()
+}
+
 fn score_text(score: Option<u32>) -> String {
     score.map_or("no game".to_owned(), |score| format!("{score} pins"))
 }
@@ -144,7 +186,7 @@ fn print_result(game: &Game, started: &[Button], recording: &Recording) {
         println!("The session was ended before both games were over.");
     }
     println!(
-        "{} frames replayed: scores, motion table and state agree.",
+        "{} frames replayed: scores, events, motion table and state agree.",
         recording.inputs.len()
     );
     println!("State hash {}", recording.end.hash);

@@ -70,9 +70,7 @@ impl Session {
     pub fn start(setup: Setup) -> Result<Self> {
         let game =
             Game::new(setup.conditions.clone(), setup.frames).context("cannot set up the alley")?;
-        let folder = OutputFolder::create(&setup.folder)?;
-        let mut motion = folder.draft(MOTION)?;
-        writeln!(motion, "{}", motion::heading()).context(MOTION_FAILED)?;
+        let camera = Camera::new(&game);
         let header = Header {
             schema: journal::SCHEMA,
             program: env!("CARGO_PKG_VERSION").to_owned(),
@@ -85,12 +83,17 @@ impl Session {
             scene: setup.scene,
             conditions: setup.conditions,
         };
-        let journal = Journal::create(&folder.path().join(JOURNAL), header)?;
-        let camera = Camera::new(&game);
-        let boundary = Boundary::default();
+        let folder = OutputFolder::create(&setup.folder)?;
+        let (journal, motion) = match begin(&folder, header) {
+            Ok(files) => files,
+            Err(error) => {
+                folder.abandon();
+                return Err(error);
+            }
+        };
         Ok(Session {
             game,
-            boundary,
+            boundary: Boundary::default(),
             journal,
             motion,
             camera,
@@ -205,6 +208,14 @@ impl Session {
         }
         Ok(Summary { files, ..summary })
     }
+}
+
+/// The two files that grow with the session, with their first lines; neither stays where one fails.
+fn begin(folder: &OutputFolder, header: Header) -> Result<(Journal, Draft)> {
+    let mut motion = folder.draft(MOTION)?;
+    writeln!(motion, "{}", motion::heading()).context(MOTION_FAILED)?;
+    let journal = Journal::create(&folder.path().join(JOURNAL), header)?;
+    Ok((journal, motion))
 }
 
 const MOTION_FAILED: &str = "cannot write the motion table: is the disk full?";

@@ -70,7 +70,12 @@ fn parse(text: &str) -> Result<Recording, Problem> {
         match entry {
             Entry::Header(_) => return Err((lines.number, "a second header".to_owned())),
             Entry::Input(line) => inputs.push(Input::from(&line)),
-            Entry::Event(event) => events.push((inputs.len().saturating_sub(1), event)),
+            Entry::Event(event) => match inputs.len().checked_sub(1) {
+                Some(input) => events.push((input, event)),
+                None => {
+                    return Err((lines.number, "an event before the first input".to_owned()));
+                }
+            },
             Entry::End(end) => {
                 if lines.next_entry()?.is_some() {
                     return Err((

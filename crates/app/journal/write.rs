@@ -1,6 +1,6 @@
 //! Appends to a journal.
 
-use std::fs::{File, OpenOptions};
+use std::fs::{self, File, OpenOptions};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -22,7 +22,7 @@ pub struct Journal {
 }
 
 impl Journal {
-    /// Creates `path`, which must not exist, and writes the header.
+    /// Creates `path`, which must not exist, and writes the header; without the header no file stays.
     ///
     /// # Errors
     /// When the file exists or cannot be written.
@@ -40,8 +40,16 @@ impl Journal {
             inputs: 0,
             inputs_per_flush: (header.rate_hz as u64).max(1),
         };
-        journal.append(&Entry::Header(Box::new(header)))?;
-        journal.flush()?;
+        let begun = journal
+            .append(&Entry::Header(Box::new(header)))
+            .and_then(|()| journal.flush());
+        if let Err(error) = begun {
+            // What is still buffered would fail again.
+            let _ = journal.file.into_parts();
+            // The error that is reported says why nothing can be done about a file that stays.
+            let _ = fs::remove_file(path);
+            return Err(error);
+        }
         Ok(journal)
     }
 
