@@ -62,7 +62,9 @@ fn play_refused(root: &Path, more: &[&str]) -> String {
 
 #[test]
 fn numbers_out_of_range_and_unknown_arguments_end_with_code_2() {
-    let cases: [&[&str]; 5] = [
+    let cases: [&[&str]; 7] = [
+        &["play", "--device", "desk", "--offscreen"],
+        &["play", "--device", "headset", "--offscreen"],
         &["play", "--frames", "0"],
         &["play", "--frames", "11"],
         &["play", "--seed", "-1"],
@@ -74,16 +76,6 @@ fn numbers_out_of_range_and_unknown_arguments_end_with_code_2() {
         assert_eq!(code, Some(2), "{arguments:?}: {text}");
         assert!(text.starts_with("error: "), "{text}");
     }
-}
-
-#[test]
-fn a_desk_without_a_screen_is_a_contradiction() {
-    let (code, text) = refused(&["play", "--device", "desk", "--offscreen"]);
-    assert_eq!(code, Some(1));
-    assert!(
-        text.contains("--offscreen") && text.contains("--device desk"),
-        "{text}"
-    );
 }
 
 #[test]
@@ -103,6 +95,24 @@ fn an_unknown_setting_is_named_with_its_argument() {
     assert!(text.contains("lane.lenght_m"), "{text}");
     let text = play_refused(&root, &["--set", "objects.elasticity=7"]);
     assert!(text.contains("objects.elasticity"), "{text}");
+    let text = play_refused(&root, &["--set", "objects=3"]);
+    assert!(
+        text.contains("3 does not fit; give a table of keys"),
+        "{text}"
+    );
+    let text = play_refused(&root, &["--set", "lane.pin_spacing_m=0.4"]);
+    assert!(
+        text.starts_with("error: --set lane.pin_spacing_m=0.4: key"),
+        "{text}"
+    );
+    let text = play_refused(
+        &root,
+        &["--set", &format!("lane.width_m=1{}.0", "0".repeat(300))],
+    );
+    assert!(
+        text.contains("1e300 is out of range") && text.len() < 250,
+        "{text}"
+    );
 }
 
 #[test]
@@ -117,15 +127,84 @@ fn an_unknown_key_in_a_file_is_named_with_file_and_line() {
 }
 
 #[test]
+fn a_file_that_is_not_text_is_named_with_its_line() {
+    let root = data("not-text");
+    fs::write(root.join("config/red.toml"), b"# Red\n# \xff\n").expect("writable");
+    let text = play_refused(&root, &[]);
+    assert!(
+        text.contains("red.toml, line 2: is not UTF-8 text"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_scene_that_is_not_there_is_named_with_those_that_are() {
+    let root = data("scene");
+    for scene in ["beach", "../red"] {
+        let text = play_refused(&root, &["--scene", scene]);
+        assert!(
+            text.contains(scene) && text.contains("there are: alley"),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn a_condition_cannot_change_the_room() {
+    let root = data("other-room");
+    fs::write(root.join("config/blue.toml"), "[lane]\nwidth_m = 1.2\n").expect("writable");
+    let text = play_refused(&root, &[]);
+    assert!(
+        text.contains("lane must be the same under Red and Blue"),
+        "{text}"
+    );
+}
+
+/// With no driver to be found, the sentence says what to install and nothing of what libraries said.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_machine_without_a_driver_is_told_what_to_install() {
+    let out = fresh_folder("no-driver").join("session");
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_bowling"))
+        .args(["play", "--offscreen", "--out"])
+        .arg(&out)
+        .env("VK_DRIVER_FILES", "/nonexistent")
+        .env("VK_ICD_FILENAMES", "/nonexistent")
+        .env("__EGL_VENDOR_LIBRARY_FILENAMES", "/nonexistent")
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .expect("the program starts");
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{text}");
+    let install = "install mesa-vulkan-drivers, or libgl1-mesa-dri and libegl1\n";
+    assert!(text.ends_with(install) && !text.contains('('), "{text}");
+    assert!(!out.exists());
+}
+
+#[test]
 fn a_missing_or_malformed_mesh_is_named() {
     let root = data("mesh");
     let mesh = root.join("assets/meshes/pin.obj");
     fs::write(&mesh, "v 0 0 0\nv 1 0 0\nv zero 1 0\nf 1 2 3\n").expect("writable");
     let text = play_refused(&root, &[]);
-    assert!(text.contains("pin.obj"), "{text}");
+    assert!(
+        text.contains("pin.obj:3") && text.contains("make-assets"),
+        "{text}"
+    );
     fs::remove_file(&mesh).expect("writable");
     let text = play_refused(&root, &[]);
-    assert!(text.contains("pin.obj"), "{text}");
+    assert!(
+        text.contains("pin.obj") && text.contains("make-assets"),
+        "{text}"
+    );
+    fs::write(&mesh, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("writable");
+    let texture = root.join("assets/textures/lane_boards.png");
+    fs::write(&texture, "no picture").expect("writable");
+    let text = play_refused(&root, &[]);
+    assert!(
+        text.contains("lane_boards.png") && text.contains("make-assets"),
+        "{text}"
+    );
 }
 
 #[test]

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::error::ErrorKind;
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -34,6 +35,30 @@ pub struct Arguments {
     pub root: Option<PathBuf>,
 }
 
+impl Arguments {
+    /// The arguments, unless they contradict each other.
+    ///
+    /// # Errors
+    /// As clap's own: a sentence for the error stream.
+    pub fn consistent(self) -> Result<Self, clap::Error> {
+        if let Some(Command::Play(play)) = &self.command
+            && play.offscreen
+            && let Some(device @ (DeviceChoice::Desk | DeviceChoice::Headset)) = play.device
+        {
+            let name = if device == DeviceChoice::Desk {
+                "desk"
+            } else {
+                "headset"
+            };
+            let problem = format!(
+                "--offscreen opens no display, but --device {name} needs one: leave one of the two out"
+            );
+            return Err(Self::command().error(ErrorKind::ArgumentConflict, problem));
+        }
+        Ok(self)
+    }
+}
+
 /// The two things that the program does.
 #[derive(Debug, Subcommand)]
 pub enum Command {
@@ -46,7 +71,7 @@ pub enum Command {
     Play(PlayArguments),
     /// Play a recording again from its inputs and check that the same came out.
     ///
-    /// Fails when the final state, a score or the motion table differs from what was recorded.
+    /// Fails when the final state, a score, an event or the motion table differs from what was recorded.
     Replay(ReplayArguments),
 }
 
@@ -140,7 +165,6 @@ pub struct ReplayArguments {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::CommandFactory;
 
     fn play(arguments: &[&str]) -> Result<PlayArguments, clap::Error> {
         let all = ["bowling", "play"].iter().chain(arguments);
@@ -168,6 +192,25 @@ mod tests {
             let error = play(&["--frames", frames]).expect_err(frames).to_string();
             assert!(error.contains("--frames"), "{error}");
         }
+    }
+
+    #[test]
+    fn a_display_and_none_are_a_contradiction() {
+        let parse = |device| {
+            Arguments::try_parse_from(["bowling", "play", "--offscreen", "--device", device])
+                .expect("each argument is good")
+                .consistent()
+        };
+        for device in ["desk", "headset"] {
+            let error = parse(device).expect_err("contradiction");
+            assert_eq!(error.exit_code(), 2);
+            let text = error.to_string();
+            assert!(
+                text.contains("--offscreen") && text.contains(device),
+                "{text}"
+            );
+        }
+        assert!(parse("script").is_ok());
     }
 
     #[test]

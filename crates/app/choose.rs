@@ -54,7 +54,7 @@ fn window_possible(is_set: impl Fn(&str) -> bool) -> Result<(), String> {
 /// Picks by the arguments and by what the machine offers; the sentence is for the person.
 ///
 /// # Errors
-/// When the arguments contradict each other or name a device that is not there.
+/// When a device is asked for that is not there.
 pub fn choose(
     device: Option<DeviceChoice>,
     offscreen: bool,
@@ -62,12 +62,11 @@ pub fn choose(
 ) -> Result<(Choice, String)> {
     use DeviceChoice::{Desk, Headset, Script};
     match (device, offscreen) {
-        (Some(asked @ (Desk | Headset)), true) => {
-            let name = if asked == Desk { "desk" } else { "headset" };
-            bail!(
-                "--offscreen opens no display, but --device {name} needs one: leave one of the two out"
-            )
-        }
+        // What needs a display was refused with the arguments.
+        (_, true) => Ok((
+            Choice::ScriptOffscreen,
+            "Scripted participant without a screen, as asked for.".to_owned(),
+        )),
         (Some(Headset), false) => match &machine.headset {
             Ok(()) => {
                 bail!("a headset is there, but this version cannot drive it: use --device desk")
@@ -95,10 +94,6 @@ pub fn choose(
                 "Scripted participant as asked for, without a window: {}.",
                 window_reason(machine)
             ),
-        )),
-        (_, true) => Ok((
-            Choice::ScriptOffscreen,
-            "Scripted participant without a screen, as asked for.".to_owned(),
         )),
         (None, false) => Ok(first_there(machine)),
     }
@@ -172,13 +167,6 @@ mod tests {
     fn choose_offscreen_wins_over_a_display() {
         let (choice, _) = choose(None, true, &machine(true)).expect("a choice");
         assert_eq!(choice, Choice::ScriptOffscreen);
-    }
-
-    #[test]
-    fn choose_refuses_a_desk_without_a_screen() {
-        let error =
-            choose(Some(DeviceChoice::Desk), true, &machine(true)).expect_err("contradiction");
-        assert!(error.to_string().contains("--offscreen"), "{error}");
     }
 
     #[test]

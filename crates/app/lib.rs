@@ -36,7 +36,7 @@ const BAD_ARGUMENTS: u8 = 2;
 ///
 /// Returns 0, 1 for a failure, or 2 for arguments that cannot be used.
 pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
-    let arguments = match Arguments::try_parse_from(arguments) {
+    let arguments = match Arguments::try_parse_from(arguments).and_then(Arguments::consistent) {
         Ok(arguments) => arguments,
         Err(error) => {
             let code = if error.use_stderr() { BAD_ARGUMENTS } else { 0 };

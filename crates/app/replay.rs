@@ -15,7 +15,7 @@ use crate::session::sheet_text;
 /// Replays the recording in `folder`, prints the score sheets and the hash.
 ///
 /// # Errors
-/// When the recording is damaged, or the hash, a score or the motion table differs.
+/// When the recording is damaged, or the hash, a score, an event or the motion table differs.
 pub fn replay(folder: &Path) -> Result<()> {
     let recording = journal::read(&folder.join(JOURNAL))?;
     let motion_path = folder.join(MOTION);

@@ -1,4 +1,4 @@
-//! What keys and mouse mean: the one table that the help, the README and this program agree on.
+//! What keys and mouse mean. The tests hold the help and the README against the table of keys.
 
 use glam::DVec2;
 use winit::dpi::PhysicalSize;
@@ -12,15 +12,46 @@ pub const HELP: &str = "\
 mouse            the hand: up and down swings the arm
 wheel            arm's length
 left button      hold to grab, let go to release
-right drag, A D  look around
+right drag       look around; also A D and arrows
 W S              walk, walk back
 1 2              the Red and the Blue button
 F1               this help
 Esc              end and save
 
+gamepad          left stick the hand, right stick head and arm,
+                 right trigger grabs, A B walk, X Y Red and Blue
+
 To bowl: press 1. Turn right to the balls, reach, hold the
 left button. Turn back and walk to the foul line. Pull the
 mouse back, push it forward, let go at the lowest point.";
+
+/// What a key does.
+#[derive(Clone, Copy, Debug)]
+enum Meaning {
+    /// Acts while it is held.
+    Hold(Hold),
+    /// Acts once when it goes down.
+    Once(Command),
+}
+
+/// Every key that means something.
+const KEYS: [(KeyCode, Meaning); 12] = [
+    (KeyCode::KeyW, Meaning::Hold(Hold::Forward)),
+    (KeyCode::KeyS, Meaning::Hold(Hold::Back)),
+    (KeyCode::KeyA, Meaning::Hold(Hold::TurnLeft)),
+    (KeyCode::ArrowLeft, Meaning::Hold(Hold::TurnLeft)),
+    (KeyCode::KeyD, Meaning::Hold(Hold::TurnRight)),
+    (KeyCode::ArrowRight, Meaning::Hold(Hold::TurnRight)),
+    (KeyCode::Digit1, RED),
+    (KeyCode::Numpad1, RED),
+    (KeyCode::Digit2, BLUE),
+    (KeyCode::Numpad2, BLUE),
+    (KeyCode::F1, Meaning::Once(Command::Help)),
+    (KeyCode::Escape, Meaning::Once(Command::End)),
+];
+
+const RED: Meaning = Meaning::Once(Command::Desk(DeskEvent::Press(game::Button::Red)));
+const BLUE: Meaning = Meaning::Once(Command::Desk(DeskEvent::Press(game::Button::Blue)));
 
 /// Pixels of a touchpad that count as one notch of a wheel.
 const PIXELS_PER_NOTCH: f64 = 40.0;
@@ -99,22 +130,10 @@ impl Keys {
 }
 
 fn key(code: KeyCode, down: bool, is_repeat: bool) -> Option<Command> {
-    let hold = |key| Some(Command::Desk(DeskEvent::Hold(key, down)));
-    let once = |command| (down && !is_repeat).then_some(command);
-    match code {
-        KeyCode::KeyW => hold(Hold::Forward),
-        KeyCode::KeyS => hold(Hold::Back),
-        KeyCode::KeyA | KeyCode::ArrowLeft => hold(Hold::TurnLeft),
-        KeyCode::KeyD | KeyCode::ArrowRight => hold(Hold::TurnRight),
-        KeyCode::Digit1 | KeyCode::Numpad1 => {
-            once(Command::Desk(DeskEvent::Press(game::Button::Red)))
-        }
-        KeyCode::Digit2 | KeyCode::Numpad2 => {
-            once(Command::Desk(DeskEvent::Press(game::Button::Blue)))
-        }
-        KeyCode::F1 => once(Command::Help),
-        KeyCode::Escape => once(Command::End),
-        _ => None,
+    let (_, meaning) = KEYS.iter().find(|(known, _)| *known == code)?;
+    match meaning {
+        Meaning::Hold(hold) => Some(Command::Desk(DeskEvent::Hold(*hold, down))),
+        Meaning::Once(command) => (down && !is_repeat).then_some(*command),
     }
 }
 
@@ -160,10 +179,35 @@ mod tests {
         assert_eq!(key(KeyCode::Digit1, false, false), None);
     }
 
+    /// What is printed on a key.
+    fn printed(code: KeyCode) -> String {
+        let name = format!("{code:?}");
+        match code {
+            KeyCode::ArrowLeft | KeyCode::ArrowRight => "arrows".to_owned(),
+            KeyCode::Escape => "Esc".to_owned(),
+            _ => ["Key", "Digit", "Numpad"]
+                .iter()
+                .find_map(|start| name.strip_prefix(start))
+                .unwrap_or(&name)
+                .to_owned(),
+        }
+    }
+
     #[test]
-    fn help_names_every_key() {
-        for name in ["mouse", "wheel", "left button", "W S", "1 2", "F1", "Esc"] {
-            assert!(HELP.contains(name), "{name} is not in the help");
+    fn help_and_readme_name_every_key() {
+        let readme = include_str!("../../../README.md");
+        let (_, readme) = readme.split_once("## Keys").expect("a section of keys");
+        let (readme, _) = readme.split_once("\n## ").expect("another section");
+        let others = ["mouse", "wheel", "left", "drag", "gamepad"];
+        let names = KEYS.iter().map(|(code, _)| printed(*code));
+        for name in names.chain(others.map(str::to_owned)) {
+            for (place, text) in [("help", HELP), ("README", readme)] {
+                let mut words = text.split(|c: char| !c.is_alphanumeric());
+                assert!(
+                    words.any(|word| word == name),
+                    "{name} is not in the {place}"
+                );
+            }
         }
     }
 }

@@ -4,16 +4,12 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 pub enum RenderError {
     /// No driver offers what was asked for.
-    #[error(
-        "no graphics driver for {tried} was found: on Debian or Ubuntu, install {packages}{detail}"
-    )]
+    #[error("no graphics driver for {tried} was found: on Debian or Ubuntu, install {packages}")]
     NoDriver {
         /// The interfaces that were tried, in words.
-        tried: String,
+        tried: &'static str,
         /// The packages that bring a software driver.
         packages: &'static str,
-        /// What the interfaces said, empty or starting with a space.
-        detail: String,
     },
     /// A driver is there but would not give a device.
     #[error("the graphics driver {adapter} refused to start: {reason}")]

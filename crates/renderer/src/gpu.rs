@@ -35,21 +35,17 @@ impl BackendChoice {
         }
     }
 
-    fn no_driver(self, detail: String) -> RenderError {
+    fn no_driver(self) -> RenderError {
         let (tried, packages) = match self {
             Self::Auto => (
                 "Vulkan or OpenGL",
-                "mesa-vulkan-drivers (or libgl1-mesa-dri and libegl1)",
+                "mesa-vulkan-drivers, or libgl1-mesa-dri and libegl1",
             ),
             Self::Vulkan => ("Vulkan", "mesa-vulkan-drivers and libvulkan1"),
             Self::Gl => ("OpenGL", "libgl1-mesa-dri and libegl1"),
             Self::Noop => ("tests", "nothing: this build lacks the test backend"),
         };
-        RenderError::NoDriver {
-            tried: tried.to_owned(),
-            packages,
-            detail,
-        }
+        RenderError::NoDriver { tried, packages }
     }
 }
 
@@ -77,42 +73,35 @@ impl Gpu {
         choice: BackendChoice,
         window: Option<&Arc<Window>>,
     ) -> Result<(Self, Option<wgpu::Surface<'static>>), RenderError> {
-        let mut said = Vec::new();
         for &backends in choice.attempts() {
-            match Self::attempt(backends, window) {
-                Ok((instance, adapter, surface)) => {
-                    return Ok((Self::on(instance, adapter)?, surface));
-                }
-                Err(reason) => said.push(reason),
+            if let Some((instance, adapter, surface)) = Self::attempt(backends, window) {
+                return Ok((Self::on(instance, adapter)?, surface));
             }
         }
-        Err(choice.no_driver(format!(" ({})", said.join("; "))))
+        Err(choice.no_driver())
     }
 
+    /// The first device of these backends; what the others say is about libraries, and the packages are the remedy.
     fn attempt(
         backends: wgpu::Backends,
         window: Option<&Arc<Window>>,
-    ) -> Result<
-        (
-            wgpu::Instance,
-            wgpu::Adapter,
-            Option<wgpu::Surface<'static>>,
-        ),
-        String,
-    > {
+    ) -> Option<(
+        wgpu::Instance,
+        wgpu::Adapter,
+        Option<wgpu::Surface<'static>>,
+    )> {
         let instance = wgpu::Instance::new(instance_descriptor(backends, window));
         let surface = window
             .map(|window| instance.create_surface(window.clone()))
             .transpose()
-            .map_err(|error| one_line(&error.to_string()))?;
+            .ok()?;
         let options = wgpu::RequestAdapterOptions {
             power_preference: wgpu::PowerPreference::HighPerformance,
             compatible_surface: surface.as_ref(),
             ..Default::default()
         };
-        let adapter = pollster::block_on(instance.request_adapter(&options))
-            .map_err(|error| one_line(&error.to_string()))?;
-        Ok((instance, adapter, surface))
+        let adapter = pollster::block_on(instance.request_adapter(&options)).ok()?;
+        Some((instance, adapter, surface))
     }
 
     fn on(instance: wgpu::Instance, adapter: wgpu::Adapter) -> Result<Self, RenderError> {
@@ -218,9 +207,9 @@ mod tests {
 
     #[test]
     fn missing_driver_names_the_package() {
-        let text = BackendChoice::Vulkan.no_driver(String::new()).to_string();
+        let text = BackendChoice::Vulkan.no_driver().to_string();
         assert!(text.contains("mesa-vulkan-drivers"), "{text}");
-        let text = BackendChoice::Gl.no_driver(String::new()).to_string();
+        let text = BackendChoice::Gl.no_driver().to_string();
         assert!(text.contains("libegl1"), "{text}");
         assert!(!text.contains('\n'), "{text}");
     }

@@ -1,12 +1,13 @@
 //! Layers of settings: read, merged, and every value traceable to the line it came from.
 
-use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use toml::de::{DeTable, DeValue};
+use toml::de::DeTable;
 use toml::{Table, Value};
 
+use super::origins::Origins;
+use super::wording::{of_serde, shortened};
 use super::{Config, validate};
 
 /// A setting that cannot be used, said in one sentence.
@@ -33,24 +34,28 @@ enum Name {
     Argument(String),
 }
 
-/// Where a value was written.
-#[derive(Clone, Debug)]
-struct Origin {
-    layer: usize,
-    line: usize,
-}
-
 impl Layer {
     /// Reads a file.
     ///
     /// # Errors
     /// When it cannot be read.
     pub fn file(path: &Path) -> Result<Self, ConfigError> {
-        let text = std::fs::read_to_string(path).map_err(|error| ConfigError {
+        let bytes = std::fs::read(path).map_err(|error| ConfigError {
             place: path.display().to_string(),
             problem: format!(
                 "cannot be read ({error}); give the folder that holds the configuration files"
             ),
+        })?;
+        let text = String::from_utf8(bytes).map_err(|error| {
+            let good = error.utf8_error().valid_up_to();
+            let line = 1 + error.as_bytes()[..good]
+                .iter()
+                .filter(|b| **b == b'\n')
+                .count();
+            ConfigError {
+                place: format!("{}, line {line}", path.display()),
+                problem: "is not UTF-8 text; save the file in UTF-8".to_owned(),
+            }
         })?;
         Ok(Self::text(path, text))
     }
@@ -91,13 +96,43 @@ impl Layer {
         };
         Ok(Self { name, text })
     }
+
+    /// What an error calls the layer.
+    pub(super) fn name(&self) -> String {
+        self.name.to_string()
+    }
+
+    /// File and line; an argument has no line.
+    pub(super) fn place(&self, line: usize) -> String {
+        match &self.name {
+            Name::File(_) => format!("{}, line {line}", self.name),
+            Name::Argument(_) => self.name(),
+        }
+    }
+
+    /// The layer's text; an argument for a key that holds text in `weaker` layers is that text, without quotes too.
+    fn text_over(&self, weaker: &Table) -> String {
+        let Name::Argument(argument) = &self.name else {
+            return self.text.clone();
+        };
+        let (key, value) = argument.split_once('=').unwrap_or((argument, ""));
+        let (key, value) = (key.trim(), value.trim());
+        let mut parts = key.split('.');
+        let first = parts.next().and_then(|part| weaker.get(part));
+        let known = parts.fold(first, |table, part| table?.get(part));
+        let is_bare = !value.starts_with(['"', '\'']);
+        if is_bare && known.is_some_and(Value::is_str) {
+            return format!("{key} = {}", Value::from(value));
+        }
+        self.text.clone()
+    }
 }
 
 impl fmt::Display for Name {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::File(path) => write!(f, "{}", path.display()),
-            Self::Argument(argument) => write!(f, "--set {argument}"),
+            Self::Argument(argument) => write!(f, "--set {}", shortened(argument)),
         }
     }
 }
@@ -121,21 +156,22 @@ impl Config {
     /// out of range.
     pub fn from_layers(layers: &[Layer]) -> Result<Self, ConfigError> {
         let mut merged = Table::new();
-        let mut origins = BTreeMap::new();
+        let mut origins = Origins::default();
         for (index, layer) in layers.iter().enumerate() {
-            let table =
-                Table::try_from_text(&layer.text).map_err(|error| no_toml(layer, &error))?;
+            let text = layer.text_over(&merged);
+            let table = Table::try_from_text(&text).map_err(|error| no_toml(layer, &error))?;
             merge(&mut merged, table);
-            let spans = DeTable::parse(&layer.text).map_err(|error| no_toml(layer, &error))?;
-            remember(spans.get_ref(), &layer.text, "", index, &mut origins);
+            let spans = DeTable::parse(&text).map_err(|error| no_toml(layer, &error))?;
+            origins.remember(spans.get_ref(), &text, index);
         }
-        let blame = |key: &str, problem: String| blame(layers, &origins, key, &problem);
         let config: Self =
             serde_path_to_error::deserialize(Value::Table(merged)).map_err(|error| {
                 let key = error.path().to_string();
-                blame(&key, first_line(error.inner().message()))
+                origins.blame(layers, &key, &[], &of_serde(error.inner().message()))
             })?;
-        validate::validate(&config).map_err(|invalid| blame(&invalid.key, invalid.problem))?;
+        validate::validate(&config).map_err(|invalid| {
+            origins.blame(layers, &invalid.key, &invalid.related, &invalid.problem)
+        })?;
         Ok(config)
     }
 
@@ -162,7 +198,7 @@ impl Config {
     ) -> Result<Self, ConfigError> {
         let mut layers = vec![
             Layer::file(&folder.join("default.toml"))?,
-            Layer::file(&folder.join("scenes").join(format!("{scene}.toml")))?,
+            Layer::file(&scene_file(folder, scene)?)?,
         ];
         if let Some(condition) = condition {
             layers.push(Layer::file(&folder.join(format!("{condition}.toml")))?);
@@ -174,56 +210,46 @@ impl Config {
     }
 }
 
+/// The file of a scene.
+fn scene_file(folder: &Path, scene: &str) -> Result<PathBuf, ConfigError> {
+    let scenes = folder.join("scenes");
+    let path = scenes.join(format!("{scene}.toml"));
+    let is_name = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
+    if !scene.is_empty() && scene.chars().all(is_name) && path.is_file() {
+        return Ok(path);
+    }
+    let mut names: Vec<String> = std::fs::read_dir(&scenes)
+        .into_iter()
+        .flatten()
+        .flatten()
+        .map(|entry| entry.path())
+        .filter(|path| path.extension().is_some_and(|end| end == "toml"))
+        .filter_map(|path| Some(path.file_stem()?.to_str()?.to_owned()))
+        .collect();
+    names.sort();
+    let names = if names.is_empty() {
+        "none".to_owned()
+    } else {
+        names.join(", ")
+    };
+    Err(ConfigError {
+        place: format!("--scene {}", shortened(scene)),
+        problem: format!(
+            "there is no such scene in {}; there are: {names}",
+            scenes.display()
+        ),
+    })
+}
+
 /// The sentence for text that TOML cannot parse.
 fn no_toml(layer: &Layer, error: &toml::de::Error) -> ConfigError {
     let line = error
         .span()
         .map_or(1, |span| line_of(&layer.text, span.start));
+    let said = error.message().lines().next().unwrap_or_default();
     ConfigError {
-        place: place(layer, line),
-        problem: format!(
-            "is not valid TOML ({}); correct the line",
-            first_line(error.message())
-        ),
-    }
-}
-
-/// The sentence for a bad key, with the place that wrote it last.
-fn blame(
-    layers: &[Layer],
-    origins: &BTreeMap<String, Origin>,
-    key: &str,
-    problem: &str,
-) -> ConfigError {
-    // A missing key was written nowhere: its table, or else the weakest layer, is where it belongs.
-    let mut known = key;
-    loop {
-        if let Some(origin) = origins.get(known) {
-            let place = place(&layers[origin.layer], origin.line);
-            return ConfigError {
-                place,
-                problem: format!("key `{key}`: {problem}"),
-            };
-        }
-        match known.rfind(['.', '[']) {
-            Some(end) => known = &known[..end],
-            None => break,
-        }
-    }
-    ConfigError {
-        place: layers.first().map_or_else(
-            || "configuration".to_owned(),
-            |layer| layer.name.to_string(),
-        ),
-        problem: format!("key `{key}`: {problem}"),
-    }
-}
-
-/// File and line; an argument has no line.
-fn place(layer: &Layer, line: usize) -> String {
-    match &layer.name {
-        Name::File(_) => format!("{}, line {line}", layer.name),
-        Name::Argument(_) => layer.name.to_string(),
+        place: layer.place(line),
+        problem: format!("is not valid TOML ({said}); correct the line"),
     }
 }
 
@@ -239,61 +265,11 @@ fn merge(into: &mut Table, from: Table) {
     }
 }
 
-/// Notes the line of every key of `table`, under its dotted path.
-fn remember(
-    table: &DeTable<'_>,
-    text: &str,
-    path: &str,
-    layer: usize,
-    origins: &mut BTreeMap<String, Origin>,
-) {
-    for (key, value) in table {
-        let dot = if path.is_empty() { "" } else { "." };
-        let path = format!("{path}{dot}{}", key.get_ref());
-        let line = line_of(text, key.span().start);
-        remember_value(
-            value.get_ref(),
-            text,
-            &path,
-            Origin { layer, line },
-            origins,
-        );
-    }
-}
-
-/// Notes one value and, in tables and arrays, those within.
-fn remember_value(
-    value: &DeValue<'_>,
-    text: &str,
-    path: &str,
-    origin: Origin,
-    origins: &mut BTreeMap<String, Origin>,
-) {
-    let layer = origin.layer;
-    match value {
-        DeValue::Table(table) => remember(table, text, path, layer, origins),
-        DeValue::Array(items) => {
-            for (index, item) in items.iter().enumerate() {
-                let line = line_of(text, item.span().start);
-                let path = format!("{path}[{index}]");
-                remember_value(item.get_ref(), text, &path, Origin { layer, line }, origins);
-            }
-        }
-        _ => {}
-    }
-    origins.insert(path.to_owned(), origin);
-}
-
 /// Line, from 1, of a byte of `text`.
-fn line_of(text: &str, byte: usize) -> usize {
-    text.bytes()
+pub(super) fn line_of(text: &str, byte: usize) -> usize {
+    1 + text
+        .bytes()
         .take(byte)
         .filter(|byte| *byte == b'\n')
         .count()
-        + 1
-}
-
-/// One sentence has one line.
-fn first_line(message: &str) -> String {
-    message.lines().next().unwrap_or_default().to_owned()
 }

@@ -86,13 +86,14 @@ fn stronger_layers_win() {
 fn an_unknown_key_is_named_with_file_and_line() {
     let message = refusal("# a comment\n[objects]\nelastcity = 1.0\n");
     assert!(
-        message.starts_with("config/blue.toml, line 3: key `objects.elastcity`: unknown field"),
+        message
+            .starts_with("config/blue.toml, line 3: key `objects.elastcity`: there is no such key"),
         "{message}"
     );
     assert!(message.contains("`elasticity`"), "{message}");
     let message = refusal("[objcts]\nelasticity = 1.0\n");
     assert!(
-        message.starts_with("config/blue.toml, line 1: key `objcts`: unknown field"),
+        message.starts_with("config/blue.toml, line 1: key `objcts`: there is no such key"),
         "{message}"
     );
 }
@@ -120,18 +121,21 @@ fn a_value_out_of_range_is_named_with_file_and_line() {
 fn a_value_of_the_wrong_type_is_named_with_file_and_line() {
     let message = refusal("[objects]\nshape = \"cube\"\n");
     assert!(
-        message
-            .starts_with("config/blue.toml, line 2: key `objects.shape`: unknown variant `cube`"),
+        message.starts_with("config/blue.toml, line 2: key `objects.shape`: `cube` does not fit"),
         "{message}"
     );
     let message = refusal("[objects]\nelasticity = \"high\"\n");
     assert!(
-        message.starts_with("config/blue.toml, line 2: key `objects.elasticity`: invalid type"),
+        message.ends_with(
+            "line 2: key `objects.elasticity`: the text \"high\" does not fit; give a number"
+        ),
         "{message}"
     );
     let message = refusal("[gutter]\nfacets = -3\n");
     assert!(
-        message.starts_with("config/blue.toml, line 2: key `gutter.facets`: invalid value"),
+        message.starts_with(
+            "config/blue.toml, line 2: key `gutter.facets`: -3 does not fit; give a whole number"
+        ),
         "{message}"
     );
 }
@@ -140,7 +144,7 @@ fn a_value_of_the_wrong_type_is_named_with_file_and_line() {
 fn a_missing_key_is_named_with_its_table() {
     let message = refusal("[[balls]]\ndiameter_m = 0.2\nmass_kg = 4.0\n");
     assert!(
-        message.starts_with("config/blue.toml, line 1: key `balls[0]`: missing field `rg_m`"),
+        message.starts_with("config/blue.toml, line 1: key `balls[0]`: `rg_m` is missing; add it"),
         "{message}"
     );
 }
@@ -178,12 +182,12 @@ fn arguments_are_toml_or_strings_and_errors_quote_them() {
         ObjectShape::Ellipsoid
     );
     assert_eq!(
-        load("display.profile=1996")
-            .unwrap_err()
-            .to_string()
-            .split(':')
-            .next(),
-        Some("--set display.profile=1996")
+        load("display.profile=1996").unwrap().display.profile,
+        DisplayProfileName::Of1996
+    );
+    assert_eq!(
+        load("objects.shape=true").unwrap().objects.shape,
+        ObjectShape::True
     );
     assert_eq!(
         load("objects.friction_rate = 0.25")
@@ -209,14 +213,92 @@ fn arguments_are_toml_or_strings_and_errors_quote_them() {
 }
 
 #[test]
-fn a_missing_file_is_named() {
-    let message = Config::load(&folder(), "no-such-scene", None, &[])
-        .unwrap_err()
-        .to_string();
+fn no_type_of_the_program_is_named() {
+    let refused = |argument: &str| {
+        let layer = [argument.to_owned()];
+        Config::load(&folder(), "alley", None, &layer)
+            .unwrap_err()
+            .to_string()
+    };
+    for argument in [
+        "lane.boards=true",
+        "lane.boards=2.5",
+        "lane.boards=99999999999",
+        "objects=3",
+        "objects.elasticity=[1]",
+        "objects.elasticity={a=1}",
+        "objects.shape={a=1}",
+        "balls=3",
+        "balls=[3]",
+        "physics.sleeping=1",
+    ] {
+        let message = refused(argument);
+        assert!(message.contains(" does not fit; give "), "{message}");
+        for word in [
+            "struct", "f64", "u32", "expected", "invalid", "variant", "Config",
+        ] {
+            assert!(!message.contains(word), "`{word}` in: {message}");
+        }
+    }
+    for value in ["1e301", &"1".repeat(301), &format!("{}.0", "1".repeat(301))] {
+        let message = refused(&format!("lane.width_m={value}"));
+        assert!(message.len() < 200, "{message}");
+    }
+}
+
+#[test]
+fn a_relation_blames_the_value_that_was_set_last() {
+    for (argument, key) in [
+        ("lane.pin_spacing_m=0.4", "lane.width_m"),
+        ("lane.row_pitch_m=0.9", "lane.deck_end_z_m"),
+        ("desk.button_radius_m=0.2", "desk.button_spacing_m"),
+        ("hand.trigger_close=0.2", "hand.trigger_open"),
+        (
+            "pin.parts.belly_height_m=0.19",
+            "pin.parts.shoulder_height_m",
+        ),
+        ("room.depth_m=3", "room.approach_length_m"),
+        ("physics.step_hz=700", "tracking.rate_hz"),
+    ] {
+        let arguments = [argument.to_owned()];
+        let message = Config::load(&folder(), "alley", None, &arguments)
+            .unwrap_err()
+            .to_string();
+        let expected = format!("--set {argument}: key `{key}`: ");
+        assert!(message.starts_with(&expected), "{message}");
+    }
+    // The key itself is to blame where nothing stronger is.
+    let message = refusal("[lane]\nwidth_m = 0.6\n");
     assert!(
-        message.contains("no-such-scene.toml: cannot be read"),
+        message.starts_with("config/blue.toml, line 2: "),
         "{message}"
     );
+}
+
+#[test]
+fn text_that_is_not_utf_8_is_named_with_its_line() {
+    let path = std::env::temp_dir().join(format!("not-utf-8-{}.toml", std::process::id()));
+    std::fs::write(&path, b"[objects]\n# \xff\n").unwrap();
+    let message = Layer::file(&path).unwrap_err().to_string();
+    std::fs::remove_file(&path).unwrap();
+    assert!(
+        message.ends_with(".toml, line 2: is not UTF-8 text; save the file in UTF-8"),
+        "{message}"
+    );
+}
+
+#[test]
+fn a_scene_that_is_not_there_is_refused_with_those_that_are() {
+    for scene in ["no-such-scene", "../red", "sub/alley", "", "."] {
+        let message = Config::load(&folder(), scene, None, &[])
+            .unwrap_err()
+            .to_string();
+        assert!(
+            message.starts_with(&format!("--scene {scene}: ")),
+            "{message}"
+        );
+        assert!(message.ends_with("there are: alley"), "{message}");
+    }
 }
 
 #[test]

@@ -19,8 +19,8 @@ pub struct Headset {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum HeadsetError {
     /// The OpenXR loader library is not installed.
-    #[error("no OpenXR loader is installed: on Debian or Ubuntu, install libopenxr-loader1 ({0})")]
-    NoLoader(String),
+    #[error("no OpenXR loader is installed: on Debian or Ubuntu, install libopenxr-loader1")]
+    NoLoader,
     /// The loader found no active runtime.
     #[error(
         "no OpenXR runtime is active: start SteamVR, Monado or WiVRn once and make it the active runtime, or set XR_RUNTIME_JSON"
