@@ -1,5 +1,6 @@
 //! Pictures of a game: a stereo contact sheet and a video of highlights, for both eyes.
 
+pub mod album;
 pub mod avi;
 pub mod contact_sheet;
 pub mod film;
@@ -17,6 +18,7 @@ use renderer::{
     BackendChoice, Gpu, Renderer, RendererSettings, TextBlock, TextPainter, View, relay,
 };
 
+use self::album::Album;
 use self::film::{Film, Shot};
 use crate::convert::{self, Stock};
 use crate::output::OutputFolder;
@@ -97,9 +99,16 @@ impl Painter {
         wanted: Wanted,
         progress: &mut dyn FnMut(&str),
     ) -> Result<Vec<PathBuf>> {
-        let mut files = vec![contact_sheet::write(self, still, film, folder, progress)?];
+        let mut album = Album {
+            painter: self,
+            still,
+            film,
+            folder,
+            progress,
+        };
+        let mut files = vec![contact_sheet::write(&mut album)?];
         if wanted.video {
-            files.extend(highlights::write(self, still, film, folder, progress)?);
+            files.extend(highlights::write(&mut album)?);
         }
         Ok(files)
     }
@@ -153,19 +162,6 @@ impl Painter {
             }
         }
         Ok(images)
-    }
-
-    /// The participant's eyes; a spectator's while the head is not tracked.
-    fn own_eyes(&self, shot: &Shot) -> [View; 2] {
-        match shot.head {
-            Some(head) => convert::eyes(&head, &self.display),
-            None => self.spectator_eyes(),
-        }
-    }
-
-    /// A pair of eyes before the pin deck, as far apart as the participant's.
-    fn spectator_eyes(&self) -> [View; 2] {
-        convert::spectator_eyes(self.headpin_z, &self.display)
     }
 }
 

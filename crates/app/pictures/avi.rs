@@ -105,26 +105,34 @@ impl<W: Write + Seek> AviWriter<W> {
 
     /// Everything before the first frame; `movi_bytes` counts from the word `movi` on.
     fn header(&self, movi_bytes: u32) -> Vec<u8> {
-        let frames = self.index.len() as u32;
-        let index_bytes = 8 + 16 * frames;
-        let riff_bytes = MOVI_START as u32 - 8 + movi_bytes + index_bytes;
+        let index_bytes = 8 + 16 * self.index.len() as u32;
+        let stream = list(
+            b"strl",
+            &[
+                chunk(b"strh", &self.stream_header()),
+                chunk(b"strf", &self.picture_format()),
+            ],
+        );
+        let headers = list(b"hdrl", &[chunk(b"avih", &self.main_header()), stream]);
         let mut bytes = Vec::with_capacity(MOVI_START as usize + 4);
-        let mut put = |part: &[u8]| bytes.extend_from_slice(part);
-        let number = |value: u32| value.to_le_bytes();
-        put(b"RIFF");
-        put(&number(riff_bytes));
-        put(b"AVI ");
-        put(b"LIST");
-        put(&number(192));
-        put(b"hdrl");
-        put(b"avih");
-        put(&number(56));
-        let main_header = [
+        bytes.extend(b"RIFF");
+        bytes.extend((MOVI_START as u32 - 8 + movi_bytes + index_bytes).to_le_bytes());
+        bytes.extend(b"AVI ");
+        bytes.extend(headers);
+        bytes.extend(b"LIST");
+        bytes.extend(movi_bytes.to_le_bytes());
+        bytes.extend(b"movi");
+        bytes
+    }
+
+    /// AVIMAINHEADER.
+    fn main_header(&self) -> Vec<u8> {
+        numbers(&[
             1_000_000 / self.frames_per_second,
             self.largest_frame.saturating_mul(self.frames_per_second),
             0,
             HAS_INDEX,
-            frames,
+            self.index.len() as u32,
             0,
             1,
             self.largest_frame,
@@ -134,50 +142,58 @@ impl<W: Write + Seek> AviWriter<W> {
             0,
             0,
             0,
-        ];
-        main_header.iter().for_each(|value| put(&number(*value)));
-        put(b"LIST");
-        put(&number(116));
-        put(b"strl");
-        put(b"strh");
-        put(&number(56));
-        put(b"vidsMJPG");
+        ])
+    }
+
+    /// AVISTREAMHEADER.
+    fn stream_header(&self) -> Vec<u8> {
         // Flags, priority and language, initial frames, scale, rate, start, length, buffer,
         // quality (u32::MAX: the codec's own), sample size (0: each frame differs).
-        let stream_header = [
+        let timing = [
             0,
             0,
             0,
             1,
             self.frames_per_second,
             0,
-            frames,
+            self.index.len() as u32,
             self.largest_frame,
             u32::MAX,
             0,
         ];
-        stream_header.iter().for_each(|value| put(&number(*value)));
+        let mut bytes = b"vidsMJPG".to_vec();
+        bytes.extend(numbers(&timing));
         for edge in [0, 0, self.width as u16, self.height as u16] {
-            put(&edge.to_le_bytes());
+            bytes.extend(edge.to_le_bytes());
         }
-        put(b"strf");
-        put(&number(40));
-        let picture_bytes = self.width.saturating_mul(self.height).saturating_mul(3);
-        [40, self.width, self.height]
-            .iter()
-            .for_each(|value| put(&number(*value)));
-        // One plane, 24 bits per pixel.
-        put(&1u16.to_le_bytes());
-        put(&24u16.to_le_bytes());
-        put(b"MJPG");
-        [picture_bytes, 0, 0, 0, 0]
-            .iter()
-            .for_each(|value| put(&number(*value)));
-        put(b"LIST");
-        put(&number(movi_bytes));
-        put(b"movi");
         bytes
     }
+
+    /// BITMAPINFOHEADER.
+    fn picture_format(&self) -> Vec<u8> {
+        let picture_bytes = self.width.saturating_mul(self.height).saturating_mul(3);
+        // One plane, 24 bits per pixel.
+        let planes_and_bits = 1 | 24 << 16;
+        let mut bytes = numbers(&[40, self.width, self.height, planes_and_bits]);
+        bytes.extend(b"MJPG");
+        bytes.extend(numbers(&[picture_bytes, 0, 0, 0, 0]));
+        bytes
+    }
+}
+
+fn numbers(values: &[u32]) -> Vec<u8> {
+    values.iter().copied().flat_map(u32::to_le_bytes).collect()
+}
+
+/// A RIFF chunk: name, length, contents.
+fn chunk(name: &[u8; 4], contents: &[u8]) -> Vec<u8> {
+    let length = contents.len() as u32;
+    [name, &length.to_le_bytes()[..], contents].concat()
+}
+
+/// A RIFF list of chunks.
+fn list(name: &[u8; 4], chunks: &[Vec<u8>]) -> Vec<u8> {
+    chunk(b"LIST", &[&name[..], &chunks.concat()].concat())
 }
 
 #[cfg(test)]

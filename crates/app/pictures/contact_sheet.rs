@@ -7,13 +7,11 @@ use std::io::Cursor;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result};
-use game::Visible;
-use image::{ImageFormat, RgbaImage};
+use image::ImageFormat;
 
-use super::Painter;
+use super::album::{Album, Eyes};
 use super::film::{Film, Shot, Throw};
-use super::layout::{eye_size, paper, place};
-use crate::output::OutputFolder;
+use super::layout::{paper, place};
 
 /// Pixels of one eye's picture: eight tiles beside each other fill a wide screen.
 const EYE_AREA: f32 = 160.0 * 160.0;
@@ -25,13 +23,6 @@ const TEXT: u32 = 20;
 const CAPTIONS: usize = 5;
 /// Deliveries beside each other.
 const ACROSS: u32 = 2;
-
-/// Whose eyes a moment is seen with.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Eyes {
-    Own,
-    Spectator,
-}
 
 /// One tile's content.
 struct Moment {
@@ -78,15 +69,9 @@ fn moments(throw: &Throw) -> [Moment; 4] {
 ///
 /// # Errors
 /// When a tile cannot be drawn or the file cannot be written.
-pub fn write(
-    painter: &mut Painter,
-    still: &[Visible],
-    film: &Film,
-    folder: &OutputFolder,
-    progress: &mut dyn FnMut(&str),
-) -> Result<PathBuf> {
-    let eyes = painter.spectator_eyes();
-    let size = eye_size(EYE_AREA, eyes[0].fov.aspect());
+pub fn write(album: &mut Album<'_>) -> Result<PathBuf> {
+    let film = album.film;
+    let size = album.size(EYE_AREA);
     let lines = lines(&film.throws);
     let (tile_width, tile_height) = (2 * size.0 + GAP, size.1 + TEXT + GAP);
     let block_width = 4 * tile_width + 2 * GAP;
@@ -97,7 +82,7 @@ pub fn write(
         "{}: {} pins. Left eye, right eye. Grab and release through the participant's eyes, the rest from beside the pins.",
         film.button, film.total
     );
-    let captions = painter.captions(&captions(film, title))?;
+    let captions = album.painter.captions(&captions(film, title))?;
     let (title, captions) = captions.split_first().expect("the title is the first");
     place(&mut sheet, title, GAP, GAP);
     let throws = film
@@ -106,7 +91,7 @@ pub fn write(
         .zip(&lines)
         .zip(captions.chunks_exact(CAPTIONS));
     for (number, ((throw, (line, block)), captions)) in throws.enumerate() {
-        progress(&format!(
+        (album.progress)(&format!(
             "{} contact sheet: delivery {} of {}",
             film.button,
             number + 1,
@@ -117,7 +102,7 @@ pub fn write(
         for (column, (moment, caption)) in moments(throw).iter().zip(&captions[1..]).enumerate() {
             let x = left + column as u32 * tile_width;
             if let Some(shot) = moment.shot(film) {
-                let [left_eye, right_eye] = tile(painter, still, shot, moment, size)?;
+                let [left_eye, right_eye] = album.draw(shot, moment.eyes, size)?;
                 place(&mut sheet, &left_eye, x, top + TEXT);
                 place(&mut sheet, &right_eye, x + size.0, top + TEXT);
             }
@@ -128,25 +113,10 @@ pub fn write(
     sheet
         .write_to(&mut png, ImageFormat::Png)
         .context("cannot encode the contact sheet")?;
-    folder.write(
+    album.folder.write(
         &format!("{}-contact-sheet.png", film.button.file_stem()),
         png.get_ref(),
     )
-}
-
-/// Both eyes of one moment.
-fn tile(
-    painter: &mut Painter,
-    still: &[Visible],
-    shot: &Shot,
-    moment: &Moment,
-    size: (u32, u32),
-) -> Result<[RgbaImage; 2]> {
-    let eyes = match moment.eyes {
-        Eyes::Own => painter.own_eyes(shot),
-        Eyes::Spectator => painter.spectator_eyes(),
-    };
-    painter.draw(still, shot, &eyes, size)
 }
 
 /// The title, then for each delivery its heading and the captions of its moments.

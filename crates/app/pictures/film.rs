@@ -107,15 +107,21 @@ impl Camera {
     pub fn observe(&mut self, game: &Game) {
         let is_moment = game.events().iter().any(|event| is_moment(&event.kind));
         for event in game.events() {
-            if let EventKind::GameStarted { button } = event.kind {
-                self.films.push(Film {
-                    button,
-                    shots: Vec::new(),
-                    throws: Vec::new(),
-                    total: 0,
-                });
-                self.is_filming = true;
-                self.last_shot = None;
+            match event.kind {
+                EventKind::GameStarted { button } => {
+                    self.films.push(Film {
+                        button,
+                        shots: Vec::new(),
+                        throws: Vec::new(),
+                        total: 0,
+                    });
+                    self.is_filming = true;
+                    self.last_shot = None;
+                }
+                // Before the snapshot, which shows the hand as the grab and the release leave it.
+                EventKind::Grabbed { .. } => self.hand_is_closed = true,
+                EventKind::Released(_) => self.hand_is_closed = false,
+                _ => {}
             }
         }
         let is_due = self
@@ -200,11 +206,6 @@ impl Camera {
                 film.total = *total;
                 self.is_filming = false;
             }
-            _ => {}
-        }
-        match event {
-            EventKind::Grabbed { .. } => self.hand_is_closed = true,
-            EventKind::Released(_) => self.hand_is_closed = false,
             _ => {}
         }
     }

@@ -4,14 +4,12 @@
 use std::path::PathBuf;
 
 use anyhow::{Context, Result};
-use game::Visible;
 use image::{DynamicImage, RgbImage, RgbaImage};
 
-use super::Painter;
+use super::album::{Album, Eyes};
 use super::avi::AviWriter;
-use super::film::{Film, SHOTS_PER_SECOND, Throw};
-use super::layout::{eye_size, paper, place};
-use crate::output::OutputFolder;
+use super::film::{Film, SHOTS_PER_SECOND, Shot, Throw};
+use super::layout::{paper, place};
 
 /// Pixels of one eye's picture: chosen so that two videos take under two minutes on two cores
 /// without a graphics card.
@@ -20,10 +18,15 @@ const EYE_AREA: f32 = 272.0 * 272.0;
 const TEXT: u32 = 20;
 /// Longest video [s].
 const LONGEST: f64 = 20.0;
-/// Shown before the release and after it [s].
-const RELEASE: (f64, f64) = (0.9, 0.7);
-/// Shown before the first hit and after it [s].
-const HIT: (f64, f64) = (0.4, 1.9);
+/// Looked at before and after the release [s]: the swing's way down and the ball's way to the arrows.
+const RELEASE: (f64, f64) = (0.1, 0.9);
+/// Looked at before and after the first hit [s].
+const HIT: (f64, f64) = (0.5, 1.9);
+/// A clip begins this long before the ball comes into sight [s].
+const LEAD: f64 = 0.07;
+
+/// Whether a snapshot shows a ball to the eyes.
+type Shows<'a> = dyn Fn(&Shot, Eyes) -> bool + 'a;
 
 /// A stretch of the film.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,7 +34,7 @@ struct Clip {
     throw: usize,
     from: f64,
     to: f64,
-    own_eyes: bool,
+    eyes: Eyes,
 }
 
 impl Clip {
@@ -44,43 +47,33 @@ impl Clip {
 ///
 /// # Errors
 /// When a picture cannot be drawn or the file cannot be written.
-pub fn write(
-    painter: &mut Painter,
-    still: &[Visible],
-    film: &Film,
-    folder: &OutputFolder,
-    progress: &mut dyn FnMut(&str),
-) -> Result<Option<PathBuf>> {
-    let frames = frames(film);
+pub fn write(album: &mut Album<'_>) -> Result<Option<PathBuf>> {
+    let film = album.film;
+    let frames = frames(film, &|shot, eyes| album.shows_a_ball(shot, eyes));
     if frames.is_empty() {
         return Ok(None);
     }
-    let spectator = painter.spectator_eyes();
-    let size = eye_size(EYE_AREA, spectator[0].fov.aspect());
-    let draft = folder.draft(&format!("{}-highlights.avi", film.button.file_stem()))?;
+    let size = album.size(EYE_AREA);
+    let draft = album
+        .folder
+        .draft(&format!("{}-highlights.avi", film.button.file_stem()))?;
     let lines: Vec<String> = film
         .throws
         .iter()
         .map(|throw| caption(film, throw))
         .collect();
-    let captions = painter.captions(&lines)?;
+    let captions = album.painter.captions(&lines)?;
     let mut video =
         AviWriter::new(draft, 2 * size.0, size.1 + TEXT, SHOTS_PER_SECOND).context(FAILED)?;
     for (number, (clip, index)) in frames.iter().enumerate() {
         if number.is_multiple_of(SHOTS_PER_SECOND as usize) {
-            progress(&format!(
+            (album.progress)(&format!(
                 "{} highlights: picture {number} of {}",
                 film.button,
                 frames.len()
             ));
         }
-        let shot = &film.shots[*index];
-        let eyes = if clip.own_eyes {
-            painter.own_eyes(shot)
-        } else {
-            spectator
-        };
-        let [left, right] = painter.draw(still, shot, &eyes, size)?;
+        let [left, right] = album.draw(&film.shots[*index], clip.eyes, size)?;
         let picture = page(&left, &right, &captions[clip.throw]);
         video.push(&picture).context(FAILED)?;
     }
@@ -107,9 +100,9 @@ fn caption(film: &Film, throw: &Throw) -> String {
 }
 
 /// Every picture of the video: its clip and its snapshot.
-fn frames(film: &Film) -> Vec<(Clip, usize)> {
+fn frames(film: &Film, shows: &Shows<'_>) -> Vec<(Clip, usize)> {
     let mut frames = Vec::new();
-    for clip in clips(film) {
+    for clip in clips(film, shows) {
         // Snapshots of moments lie between the regular ones: pick the nearest to each video frame.
         let count = (clip.duration() * f64::from(SHOTS_PER_SECOND)).floor() as usize;
         for number in 0..count {
@@ -122,14 +115,14 @@ fn frames(film: &Film) -> Vec<(Clip, usize)> {
 }
 
 /// The clips of the best throws that fit into the video, in the order of play.
-fn clips(film: &Film) -> Vec<Clip> {
+fn clips(film: &Film, shows: &Shows<'_>) -> Vec<Clip> {
     let mut by_pins: Vec<usize> = (0..film.throws.len()).collect();
     // Stable: of two throws with equally many pins the earlier one goes first.
     by_pins.sort_by_key(|index| std::cmp::Reverse(film.throws[*index].fallen));
     let mut chosen: Vec<(usize, Vec<Clip>)> = Vec::new();
     let mut left = LONGEST;
     for index in by_pins {
-        let clips = clips_of(film, index);
+        let clips = clips_of(film, index, shows);
         let duration: f64 = clips.iter().map(Clip::duration).sum();
         if !clips.is_empty() && duration <= left {
             left -= duration;
@@ -140,32 +133,41 @@ fn clips(film: &Film) -> Vec<Clip> {
     chosen.into_iter().flat_map(|(_, clips)| clips).collect()
 }
 
-fn clips_of(film: &Film, index: usize) -> Vec<Clip> {
+/// The clips of one throw. Each begins when there is a ball to see: the swing is behind and below what the eyes see.
+fn clips_of(film: &Film, index: usize, shows: &Shows<'_>) -> Vec<Clip> {
     let throw = &film.throws[index];
     let (Some(first), Some(last)) = (film.shots.first(), film.shots.last()) else {
         return Vec::new();
     };
-    let clip = |at: Option<usize>, (before, after): (f64, f64), own_eyes| {
+    let clip = |at: Option<usize>, (before, after): (f64, f64), eyes| {
         let time = film.shots.get(at?)?.time;
+        let (from, to) = (time - before, (time + after).min(last.time));
+        let seen = film.shots[film.nearest(from)..]
+            .iter()
+            .take_while(|shot| shot.time < to)
+            .find(|shot| shows(shot, eyes));
+        let from = seen.map_or(from, |shot| shot.time - LEAD);
         Some(Clip {
             throw: index,
-            from: (time - before).max(first.time),
-            to: (time + after).min(last.time),
-            own_eyes,
+            from: from.max(first.time),
+            to,
+            eyes,
         })
     };
     // A gutter ball has no hit; its end is shown instead.
     let end = throw.first_hit.or(throw.settled);
-    [clip(throw.release, RELEASE, true), clip(end, HIT, false)]
-        .into_iter()
-        .flatten()
-        .collect()
+    [
+        clip(throw.release, RELEASE, Eyes::Own),
+        clip(end, HIT, Eyes::Spectator),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pictures::film::Shot;
     use game::Button;
 
     /// A throw every ten seconds.
@@ -196,7 +198,7 @@ mod tests {
 
     #[test]
     fn frames_never_last_longer_than_twenty_seconds() {
-        let frames = frames(&film(&[5; 12]));
+        let frames = frames(&film(&[5; 12]), &|_, _| true);
         assert!(
             frames.len() <= 600 && frames.len() > 500,
             "{}",
@@ -209,7 +211,7 @@ mod tests {
         let mut fallen = [1; 10];
         fallen[7] = 10;
         fallen[2] = 9;
-        let throws: Vec<usize> = clips(&film(&fallen))
+        let throws: Vec<usize> = clips(&film(&fallen), &|_, _| true)
             .iter()
             .map(|clip| clip.throw)
             .collect();
@@ -221,9 +223,23 @@ mod tests {
     #[test]
     fn frames_move_on_in_time_within_a_clip() {
         let film = film(&[5, 6]);
-        for pair in frames(&film).windows(2) {
+        for pair in frames(&film, &|_, _| true).windows(2) {
             let same_clip = pair[0].0 == pair[1].0;
             assert!(!same_clip || pair[0].1 < pair[1].1, "{pair:?}");
         }
+    }
+
+    #[test]
+    fn clips_begin_just_before_a_ball_is_seen() {
+        // Released at 2 s and seen from 2.3 s on; it hits at 4.33 s and is seen there all the time.
+        let clips = clips(&film(&[5]), &|shot, eyes| {
+            eyes == Eyes::Spectator || shot.time > 2.29
+        });
+        let begins: Vec<f64> = clips.iter().map(|clip| clip.from).collect();
+        assert!((begins[0] - (2.3 - LEAD)).abs() < 1e-9, "{begins:?}");
+        assert!(
+            (begins[1] - (130.0 / 30.0 - HIT.0 - LEAD)).abs() < 0.02,
+            "{begins:?}"
+        );
     }
 }
