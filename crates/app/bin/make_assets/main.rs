@@ -9,7 +9,9 @@ mod pieces;
 mod textures;
 
 use anyhow::{Context, Result, bail};
-use bowling_app::scenery::{BOARDS_IN_IMAGE, mesh::cuboid};
+use bowling_app::scenery::BOARDS_IN_IMAGE;
+use bowling_app::scenery::mesh::{Mesh, cuboid};
+use image::{ImageFormat, RgbImage};
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
@@ -49,56 +51,59 @@ fn assets(root: &Path) -> Result<Vec<(PathBuf, Vec<u8>)>> {
     let csv = std::fs::read_to_string(&source)
         .with_context(|| format!("cannot read {}", source.display()))?;
     let profile = pieces::read_profile(&csv).with_context(|| source.display().to_string())?;
-
+    let (_, height) = *profile.last().expect("read_profile wants three rows");
     let mut files = Vec::new();
-    let meshes = [
-        ("pin", pieces::pin(&profile)),
+    for (name, mesh) in meshes(&profile) {
+        let path = PathBuf::from(format!("meshes/{name}.obj"));
+        files.push((path, mesh.to_obj(name).into_bytes()));
+    }
+    for (name, texture) in textures(height) {
+        let mut png = Cursor::new(Vec::new());
+        texture
+            .write_to(&mut png, ImageFormat::Png)
+            .context("cannot encode a texture")?;
+        let path = PathBuf::from(format!("textures/{name}.png"));
+        files.push((path, png.into_inner()));
+    }
+    Ok(files)
+}
+
+/// The meshes of what is touched, with their names.
+fn meshes(profile: &[(f32, f32)]) -> [(&'static str, Mesh); 7] {
+    [
+        ("pin", pieces::pin(profile)),
         ("ball", pieces::ball()),
         ("hand_open", pieces::hand(0.0)),
         ("hand_closed", pieces::hand(1.0)),
         ("button_round", pieces::button(true)),
         ("button_square", pieces::button(false)),
         ("box", cuboid(glam::Vec3::ONE)),
-    ];
-    for (name, mesh) in meshes {
-        files.push((
-            PathBuf::from(format!("meshes/{name}.obj")),
-            mesh.to_obj(name).into_bytes(),
-        ));
-    }
+    ]
+}
 
-    let boards = BOARDS_IN_IMAGE;
-    let (_, height) = *profile.last().expect("read_profile wants three rows");
-    let textures = [
-        ("lane_boards", textures::boards(boards, true)),
-        ("approach_boards", textures::boards(boards, false)),
+/// The textures, with their names, for pins of a height [m].
+fn textures(height: f32) -> [(&'static str, RgbImage); 7] {
+    let ball = textures::ball;
+    let boards = |pale| textures::boards(BOARDS_IN_IMAGE, pale);
+    [
+        ("lane_boards", boards(true)),
+        ("approach_boards", boards(false)),
         ("pin", textures::pin(height)),
         (
             "ball_blue",
-            textures::ball([22.0, 38.0, 96.0], [92.0, 140.0, 214.0], 5),
+            ball([22.0, 38.0, 96.0], [92.0, 140.0, 214.0], 5),
         ),
         (
             "ball_green",
-            textures::ball([14.0, 66.0, 44.0], [104.0, 178.0, 120.0], 23),
+            ball([14.0, 66.0, 44.0], [104.0, 178.0, 120.0], 23),
         ),
         (
             "ball_orange",
-            textures::ball([168.0, 74.0, 16.0], [244.0, 176.0, 84.0], 41),
+            ball([168.0, 74.0, 16.0], [244.0, 176.0, 84.0], 41),
         ),
         (
             "ball_violet",
-            textures::ball([70.0, 22.0, 92.0], [178.0, 120.0, 204.0], 67),
+            ball([70.0, 22.0, 92.0], [178.0, 120.0, 204.0], 67),
         ),
-    ];
-    for (name, texture) in textures {
-        let mut png = Cursor::new(Vec::new());
-        texture
-            .write_to(&mut png, image::ImageFormat::Png)
-            .context("cannot encode a texture")?;
-        files.push((
-            PathBuf::from(format!("textures/{name}.png")),
-            png.into_inner(),
-        ));
-    }
-    Ok(files)
+    ]
 }

@@ -5,7 +5,13 @@ use crate::config::Config;
 
 /// Lane, gutters, kickbacks and pit.
 pub(super) fn building(config: &Config) -> Result<(), Invalid> {
-    let (lane, gutter) = (&config.lane, &config.gutter);
+    lane(config)?;
+    gutter(config)?;
+    pit(config)
+}
+
+fn lane(config: &Config) -> Result<(), Invalid> {
+    let lane = &config.lane;
     ranges(
         "lane",
         &[
@@ -31,7 +37,11 @@ pub(super) fn building(config: &Config) -> Result<(), Invalid> {
         &["lane.pin_spacing_m"],
         lane.width_m > 3.0 * lane.pin_spacing_m,
         "must be more than three times lane.pin_spacing_m",
-    )?;
+    )
+}
+
+fn gutter(config: &Config) -> Result<(), Invalid> {
+    let gutter = &config.gutter;
     let flat_starts = gutter.flat_starts_before_headpin_m;
     ranges(
         "gutter",
@@ -43,7 +53,11 @@ pub(super) fn building(config: &Config) -> Result<(), Invalid> {
         ],
     )?;
     let depth = ("depth_m", gutter.depth_m, 0.01, gutter.width_m / 2.0);
-    limited("gutter", depth, &["gutter.width_m"])?;
+    limited("gutter", depth, &["gutter.width_m"])
+}
+
+/// Pit and kickbacks.
+fn pit(config: &Config) -> Result<(), Invalid> {
     let (kickback, pit) = (&config.kickback, &config.pit);
     let starts = kickback.starts_before_headpin_m;
     ranges(

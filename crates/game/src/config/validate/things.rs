@@ -81,46 +81,7 @@ fn pin_parts(pin: &PinConfig) -> Result<(), Invalid> {
     ] {
         limited(table, (key, radius, 0.001, height), &["pin.height_m"])?;
     }
-    let mut below: (f64, &[&'static str]) = (0.0, &[]);
-    let heights: [(&str, f64, &[&'static str]); 5] = [
-        (
-            "foot_height_m",
-            parts.foot_height_m,
-            &["pin.parts.foot_height_m"],
-        ),
-        (
-            "belly_height_m",
-            parts.belly_height_m,
-            &["pin.parts.belly_height_m"],
-        ),
-        (
-            "shoulder_height_m",
-            parts.shoulder_height_m,
-            &["pin.parts.shoulder_height_m"],
-        ),
-        (
-            "neck_height_m",
-            parts.neck_height_m,
-            &["pin.parts.neck_height_m"],
-        ),
-        (
-            "throat_height_m",
-            parts.throat_height_m,
-            &["pin.parts.throat_height_m"],
-        ),
-    ];
-    for (key, value, own) in heights {
-        limited(table, (key, value, 0.001, height), &["pin.height_m"])?;
-        let is_higher = value > below.0;
-        relation(
-            table,
-            key,
-            below.1,
-            is_higher,
-            "must lie higher than the part below it",
-        )?;
-        below = (value, own);
-    }
+    part_heights(pin)?;
     let top = height - parts.head_radius_m + 0.01;
     limited(
         table,
@@ -143,6 +104,27 @@ fn pin_parts(pin: &PinConfig) -> Result<(), Invalid> {
         parts.belly_height_m > parts.belly_half_length_m,
         "must not let the belly reach below the base",
     )
+}
+
+/// Each part begins higher than the one below it.
+fn part_heights(pin: &PinConfig) -> Result<(), Invalid> {
+    let (table, parts) = ("pin.parts", &pin.parts);
+    let (mut below, mut lowest) = (None, 0.0);
+    for (name, height) in [
+        ("pin.parts.foot_height_m", parts.foot_height_m),
+        ("pin.parts.belly_height_m", parts.belly_height_m),
+        ("pin.parts.shoulder_height_m", parts.shoulder_height_m),
+        ("pin.parts.neck_height_m", parts.neck_height_m),
+        ("pin.parts.throat_height_m", parts.throat_height_m),
+    ] {
+        let key = name.trim_start_matches("pin.parts.");
+        let range = (key, height, 0.001, pin.height_m);
+        limited(table, range, &["pin.height_m"])?;
+        let problem = "must lie higher than the part below it";
+        relation(table, key, below.as_slice(), height > lowest, problem)?;
+        (below, lowest) = (Some(name), height);
+    }
+    Ok(())
 }
 
 /// The hand, walking, and the estimate of a release.
