@@ -43,16 +43,26 @@ pub struct Body {
     pub(crate) path: f64,
     /// The same for the rest of the step.
     pub(crate) reach: f64,
+    /// Bound of the way in a step that the waits of its pairs count on [m]; see `step/near.rs`.
+    pub(crate) pace: f64,
+    /// Length of `path` up to which its box in the broad phase holds it [m].
+    pub(crate) box_until: f64,
+    /// Whether the next step looks at it; see `World::rouse`.
+    pub(crate) listed: bool,
     /// Pose after the last step that left the state finite.
     pub(crate) last_finite: Pose,
     /// Consecutive steps at rest.
     pub(crate) still_steps: u32,
+    /// Whether it could sleep, if all that it touches could.
+    pub(crate) sleepy: bool,
     /// Number of touching contacts.
     pub(crate) contacts: u32,
     /// Whether it was put where it is since the last step, and may overlap something without moving.
     pub(crate) fresh: bool,
     /// Whether it stands perfectly still in this step, on its base alone.
     pub(crate) rests: bool,
+    /// How often its motion has changed inside a step.
+    pub(crate) changes: u32,
     /// Impulses taken in this step.
     pub(crate) blows: u32,
     /// Whether it took too many, and stays where it is for the rest of the step.
@@ -81,11 +91,16 @@ impl Body {
             end: def.pose,
             path: 0.0,
             reach: 0.0,
+            pace: 0.0,
+            box_until: f64::NEG_INFINITY,
+            listed: false,
             last_finite: def.pose,
             still_steps: 0,
+            sleepy: false,
             contacts: 0,
             rests: false,
             fresh: true,
+            changes: 0,
             blows: 0,
             squeezed: false,
         };
@@ -195,6 +210,22 @@ impl Body {
     /// Whether it is dynamic and awake.
     pub(crate) fn is_active(&self) -> bool {
         self.is_dynamic() && !self.asleep
+    }
+
+    /// Whether it moves by itself, or is moved: what a step has to look at.
+    pub(crate) fn is_busy(&self) -> bool {
+        match self.motion {
+            Motion::Fixed => false,
+            Motion::Driven => self.linear != DVec3::ZERO || self.turning != DVec3::ZERO,
+            Motion::Dynamic => self.is_active(),
+        }
+    }
+
+    /// Nothing moves it until further notice.
+    pub(crate) fn rest_in_place(&mut self) {
+        (self.reach, self.pace) = (0.0, 0.0);
+        (self.contacts, self.rests) = (0, false);
+        self.end = self.pose();
     }
 
     /// Whether nothing about it changes in this step.

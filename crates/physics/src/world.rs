@@ -6,7 +6,9 @@ use thiserror::Error;
 use crate::body::{Body, BodyDef, Motion};
 use crate::pose::Pose;
 use crate::response::Response;
+use crate::step::near::Broad;
 use crate::step::pairs::Pairs;
+use crate::step::scratch::Scratch;
 
 /// Constants of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,7 +102,13 @@ pub struct World {
     /// Per slot: how often it was reused, and whether a body lives in it.
     generations: Vec<(u32, bool)>,
     pub(crate) targets: Vec<Option<Pose>>,
+    pub(crate) broad: Broad,
     pub(crate) pairs: Pairs,
+    /// Bodies that the steps look at, in the order of their numbers when a step begins.
+    pub(crate) awake: Vec<u32>,
+    /// Contacts foreseen so far.
+    pub(crate) announced: u64,
+    pub(crate) scratch: Scratch,
     pub(crate) impacts: Vec<Impact>,
     pub(crate) effort: Effort,
     pub(crate) steps: u64,
@@ -132,7 +140,11 @@ impl World {
             bodies: Vec::new(),
             generations: Vec::new(),
             targets: Vec::new(),
+            broad: Broad::default(),
             pairs: Pairs::default(),
+            awake: Vec::new(),
+            announced: 0,
+            scratch: Scratch::default(),
             impacts: Vec::new(),
             effort: Effort::default(),
             steps: 0,
@@ -152,6 +164,7 @@ impl World {
         let slot = match self.generations.iter().position(|(_, live)| !live) {
             Some(slot) => {
                 self.generations[slot].1 = true;
+                body.listed = self.bodies[slot].listed;
                 self.bodies[slot] = body;
                 self.targets[slot] = None;
                 slot
@@ -160,6 +173,7 @@ impl World {
                 self.generations.push((0, true));
                 self.bodies.push(body);
                 self.targets.push(None);
+                self.pairs.grow(self.bodies.len());
                 self.bodies.len() - 1
             }
         };
@@ -236,6 +250,8 @@ impl World {
         let (linear, angular) = (body.linear, body.angular_velocity());
         body.motion = motion;
         body.set_velocity(linear, angular);
+        // What it never met while both stood fast.
+        body.box_until = f64::NEG_INFINITY;
         self.targets[slot] = None;
     }
 
@@ -255,6 +271,7 @@ impl World {
         let slot = self.slot(id);
         if pose.is_finite() && self.bodies[slot].motion == Motion::Driven {
             self.targets[slot] = Some(pose);
+            self.rouse(slot);
         }
     }
 
@@ -314,28 +331,31 @@ impl World {
     }
 
     /// Forgets what was known about a body that is no longer what or where it was.
-    fn renew(&mut self, slot: usize) {
-        self.bodies[slot].fresh = true;
-        self.pairs.forget(slot, self.bodies.len());
+    pub(crate) fn renew(&mut self, slot: usize) {
+        let body = &mut self.bodies[slot];
+        body.fresh = true;
+        body.box_until = f64::NEG_INFINITY;
+        self.pairs.forget(slot);
+        self.rouse(slot);
     }
 
     /// Wakes a body and all that lean on it.
     pub(crate) fn disturb(&mut self, slot: usize) {
         self.wake(slot);
-        for other in 0..self.bodies.len() {
-            if other != slot && self.pairs.any_touching(slot, other) {
-                self.wake(other);
-            }
+        for i in 0..self.pairs.contacts(slot).len() {
+            let other = self.pairs.contacts(slot)[i].key.other(slot);
+            self.wake(other);
         }
     }
 
     /// Velocity of driven bodies for this step.
     pub(crate) fn aim_driven(&mut self, dt: f64) {
-        for (body, target) in self.bodies.iter_mut().zip(&mut self.targets) {
+        for slot in &self.awake {
+            let body = &mut self.bodies[*slot as usize];
             if body.motion != Motion::Driven {
                 continue;
             }
-            let (linear, angular) = match target.take() {
+            let (linear, angular) = match self.targets[*slot as usize].take() {
                 Some(pose) => {
                     let mut change = pose.rotation * body.rotation.conjugate();
                     if change.w < 0.0 {

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::RELEASE;
 use super::pairs::Key;
+use super::scratch::Answer;
 use super::search::Event;
 use super::touch::{Base, Touch, coefficients};
 use crate::body::Body;
@@ -29,41 +30,79 @@ const ELASTIC_ROUNDS: usize = 40;
 impl World {
     /// Finds and answers all contacts that come about during the step.
     pub(crate) fn run_events(&mut self, dt: f64) {
-        let count = self.bodies.len();
-        let mut events: Vec<Event> = Vec::new();
-        let moving: Vec<usize> = (0..count).filter(|i| !self.bodies[*i].is_still()).collect();
-        for slot in &moving {
-            for other in 0..count {
-                let counted = other < *slot && !self.bodies[other].is_still();
-                if other != *slot && !counted {
-                    events.extend(self.first_contact(*slot, other, 0.0, dt));
-                }
-            }
+        self.gather_due();
+        let mut due = std::mem::take(&mut self.scratch.due);
+        for (_, _, pair) in due.drain(..) {
+            self.look(pair, 0.0, dt);
         }
-        while let Some(next) = earliest(&events).filter(|e| e.time < dt) {
+        self.scratch.due = due;
+        let mut answer = std::mem::take(&mut self.scratch.answer);
+        while let Some(next) = self.scratch.events.pop() {
+            if !self.is_valid(&next) {
+                continue;
+            }
+            if next.time >= dt {
+                break;
+            }
             self.effort.events += 1;
-            let changed = self.answer(next, dt);
-            let involved = |slot: u32| changed.contains(&(slot as usize));
-            events.retain(|e| !involved(e.key.a) && !involved(e.key.b));
-            for (i, slot) in changed.iter().enumerate() {
-                for other in 0..count {
-                    if other != *slot && !changed[..i].contains(&other) {
-                        events.extend(self.first_contact(*slot, other, next.time, dt));
-                    }
+            self.answer(next, dt, &mut answer);
+            self.look_again(&answer.bodies, next.time, dt);
+            answer.clear();
+        }
+        self.scratch.events.clear();
+        self.scratch.answer = answer;
+    }
+
+    /// Looks at a pair from `t` [s] on, and notes its next contact.
+    fn look(&mut self, pair: u32, t: f64, dt: f64) {
+        if let Some((time, key)) = self.first_contact(pair, t, dt) {
+            self.announced += 1;
+            let changes = |slot: u32| self.bodies[slot as usize].changes;
+            let event = Event {
+                time,
+                key,
+                number: self.announced,
+                changes: (changes(key.a), changes(key.b)),
+            };
+            self.scratch.events.push(event);
+        }
+        self.wait(pair);
+    }
+
+    /// Looks at all neighbours of bodies whose motion has changed at `t` [s].
+    fn look_again(&mut self, changed: &[usize], t: f64, dt: f64) {
+        for slot in changed {
+            self.bodies[*slot].changes += 1;
+            self.quicken(*slot);
+            self.stay_in_box(*slot);
+        }
+        for (i, slot) in changed.iter().enumerate() {
+            for k in 0..self.pairs.near(*slot).len() {
+                let near = self.pairs.near(*slot)[k];
+                if !changed[..i].contains(&(near.other as usize)) {
+                    self.look(near.pair, t, dt);
                 }
             }
         }
     }
 
-    /// Answers one contact and what follows from it at once; returns the bodies involved.
-    fn answer(&mut self, event: Event, dt: f64) -> Vec<usize> {
+    /// Whether neither body has changed its motion since the contact was foreseen.
+    fn is_valid(&self, event: &Event) -> bool {
+        let changes = |slot: u32| self.bodies[slot as usize].changes;
+        event.changes == (changes(event.key.a), changes(event.key.b))
+    }
+
+    /// Answers one contact and what follows from it at once; notes the bodies involved.
+    fn answer(&mut self, event: Event, dt: f64, answer: &mut Answer) {
         let t = event.time;
-        let mut bodies = Vec::new();
-        let mut struck = Vec::new();
-        let mut touches: Vec<Touch> = Vec::new();
-        self.involve(event.key, t, dt, &mut bodies, &mut touches);
+        let Answer {
+            bodies,
+            struck,
+            touches,
+        } = answer;
+        self.involve(event.key, t, dt, bodies, touches);
         for round in 0..ROUNDS {
-            let Some(worst) = self.most_approaching(&mut touches, round == 0) else {
+            let Some(worst) = self.most_approaching(touches, round == 0) else {
                 break;
             };
             let touch = touches[worst];
@@ -73,28 +112,27 @@ impl World {
             for slot in [touch.a, touch.b] {
                 if !struck.contains(&slot) && self.bodies[slot].is_dynamic() {
                     struck.push(slot);
-                    self.spread(slot, t, dt, &mut bodies, &mut touches);
+                    self.spread(slot, t, dt, bodies, touches);
                 }
             }
         }
         if struck.is_empty() {
             // Nothing approaches: the contact only begins. Its bodies still change from flight to support.
             struck.extend([event.key.a as usize, event.key.b as usize]);
-            for slot in &struck {
+            for slot in &*struck {
                 self.bodies[*slot].blows += 1;
             }
             self.squeeze(&touches[0]);
             struck.retain(|slot| self.bodies[*slot].is_active());
-            for slot in struck.clone() {
-                self.spread(slot, t, dt, &mut bodies, &mut touches);
+            for slot in &*struck {
+                self.spread(*slot, t, dt, bodies, touches);
             }
         }
-        self.settle_touches(&touches);
-        self.set_off(&struck, &touches, t, dt);
-        for slot in &bodies {
+        self.settle_touches(touches);
+        self.set_off(struck, touches, t, dt);
+        for slot in &*bodies {
             self.bodies[*slot].look_ahead(dt);
         }
-        bodies
     }
 
     /// Brings a contact and its bodies into play.
@@ -113,6 +151,7 @@ impl World {
             if !bodies.contains(&slot) && self.bodies[slot].is_dynamic() {
                 bodies.push(slot);
             }
+            self.rouse(slot);
             self.bodies[slot].advance(t, dt);
         }
         let touch = self.touch(key);
@@ -134,10 +173,9 @@ impl World {
         if self.bodies[slot].asleep {
             self.wake(slot);
         }
-        for key in self.pairs.touching.clone() {
-            if key.a as usize == slot || key.b as usize == slot {
-                self.involve(key, t, dt, bodies, touches);
-            }
+        for i in 0..self.pairs.contacts(slot).len() {
+            let key = self.pairs.contacts(slot)[i].key;
+            self.involve(key, t, dt, bodies, touches);
         }
     }
 
@@ -227,10 +265,9 @@ impl World {
     /// Chooses flight or support of the struck bodies for the rest of the step.
     fn set_off(&mut self, struck: &[usize], touches: &[Touch], t: f64, dt: f64) {
         let gravity = self.settings.gravity;
-        let mut carried = Vec::new();
+        let mut carried = std::mem::take(&mut self.scratch.carried);
         for slot in struck {
-            let on = |k: &Key| k.a as usize == *slot || k.b as usize == *slot;
-            let is_carried = self.pairs.touching.iter().any(on);
+            let is_carried = !self.pairs.contacts(*slot).is_empty();
             let body = &mut self.bodies[*slot];
             if !body.is_active() {
                 continue;
@@ -243,28 +280,21 @@ impl World {
             }
         }
         let span = dt - t;
-        if carried.is_empty() || span < 1e-9 {
-            return;
+        if !carried.is_empty() && span >= 1e-9 {
+            let mut lasting = std::mem::take(&mut self.scratch.touches);
+            let movable = |touch: &Touch| {
+                let slots = [touch.a, touch.b];
+                slots.iter().any(|slot| self.bodies[*slot].is_dynamic())
+            };
+            let lasts = |touch: &&Touch| self.pairs.part(touch.key).touching && movable(touch);
+            lasting.extend(touches.iter().filter(lasts));
+            self.carry(&lasting, &carried, span);
+            lasting.clear();
+            self.scratch.touches = lasting;
         }
-        let movable = |touch: &Touch| {
-            [touch.a, touch.b]
-                .iter()
-                .any(|slot| self.bodies[*slot].is_dynamic())
-        };
-        let lasts = |touch: &&Touch| self.pairs.part(touch.key).touching && movable(touch);
-        let lasting: Vec<Touch> = touches.iter().filter(lasts).copied().collect();
-        self.carry(&lasting, &carried, span);
+        carried.clear();
+        self.scratch.carried = carried;
     }
-}
-
-fn earliest(events: &[Event]) -> Option<Event> {
-    let mut first: Option<Event> = None;
-    for event in events {
-        if first.is_none_or(|f| event.time < f.time) {
-            first = Some(*event);
-        }
-    }
-    first
 }
 
 /// Where a flat base takes an impact: the centre of pressure that stops or reflects the whole patch.

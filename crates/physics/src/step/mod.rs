@@ -1,18 +1,21 @@
 //! One fixed step: lasting contacts, then impacts in the order of time, then sleep.
 
+pub(crate) mod near;
 pub(crate) mod pairs;
+pub(crate) mod scratch;
 
 mod approach;
 mod events;
+mod queue;
 mod rest;
 mod search;
 mod sleep;
 mod solve;
 mod touch;
+mod tree;
 
 use glam::DVec3;
 
-use crate::body::{Body, Motion};
 use crate::world::World;
 
 /// Distance at which two bodies count as in contact [m].
@@ -28,38 +31,62 @@ impl World {
         let dt = self.dt();
         self.impacts.clear();
         self.steps += 1;
+        self.awake.sort_unstable();
         if self.is_quiet() {
             return;
         }
         self.aim_driven(dt);
-        for body in &mut self.bodies {
-            body.clock = 0.0;
-            body.acceleration = DVec3::ZERO;
+        for slot in &self.awake {
+            self.bodies[*slot as usize].acceleration = DVec3::ZERO;
         }
         self.wake_driven_neighbours();
+        self.awake.sort_unstable();
         self.rest(dt);
         self.run_events(dt);
-        for body in &mut self.bodies {
+        for slot in &self.awake {
+            let body = &mut self.bodies[*slot as usize];
             body.advance(dt, dt);
             body.straighten();
             body.fresh = false;
+            body.clock = 0.0;
             (body.blows, body.squeezed) = (0, false);
         }
         self.freeze_broken();
         if self.settings.sleeping {
             self.fall_asleep(dt);
         }
+        self.dismiss();
     }
 
     /// Whether nothing moves and nobody is told to: a step then only counts.
     fn is_quiet(&self) -> bool {
-        let idle = |body: &Body| match body.motion {
-            Motion::Fixed => true,
-            Motion::Driven => body.linear == DVec3::ZERO && body.turning == DVec3::ZERO,
-            Motion::Dynamic => !body.is_active(),
-        };
-        let idle = |body: &Body| !body.fresh && idle(body);
-        self.targets.iter().all(Option::is_none) && self.bodies.iter().all(idle)
+        self.awake.iter().all(|slot| {
+            let slot = *slot as usize;
+            let body = &self.bodies[slot];
+            !body.fresh && !body.is_busy() && self.targets[slot].is_none()
+        })
+    }
+
+    /// Lets the step look at a body from now on, until it is idle again.
+    pub(crate) fn rouse(&mut self, slot: usize) {
+        let body = &mut self.bodies[slot];
+        if !body.listed {
+            body.listed = true;
+            self.awake.push(slot as u32);
+        }
+    }
+
+    /// Takes those off the list that have become idle.
+    fn dismiss(&mut self) {
+        let bodies = &mut self.bodies;
+        self.awake.retain(|slot| {
+            let body = &mut bodies[*slot as usize];
+            body.listed = body.is_busy() || body.fresh;
+            if !body.listed {
+                body.rest_in_place();
+            }
+            body.listed
+        });
     }
 
     /// Approach speed below which a contact is inelastic [m/s]: what gravity adds in 1/360 s.
@@ -71,16 +98,25 @@ impl World {
     }
 
     fn freeze_broken(&mut self) {
-        for body in &mut self.bodies {
-            if !body.is_finite() {
-                let last = body.last_finite;
-                body.position = last.position;
-                body.rotation = last.rotation;
-                body.halt();
-                body.frozen = true;
-            } else {
+        for i in 0..self.awake.len() {
+            let slot = self.awake[i] as usize;
+            let body = &mut self.bodies[slot];
+            if body.is_finite() {
                 body.last_finite = body.pose();
+            } else {
+                self.freeze(slot);
             }
         }
+    }
+
+    /// Stops a body whose state is no state any more, where it last was.
+    fn freeze(&mut self, slot: usize) {
+        let body = &mut self.bodies[slot];
+        body.position = body.last_finite.position;
+        body.rotation = body.last_finite.rotation;
+        body.path = 0.0;
+        body.halt();
+        body.frozen = true;
+        self.renew(slot);
     }
 }

@@ -10,8 +10,11 @@
 use glam::DVec3;
 
 use super::RELEASE;
-use super::solve::{Mover, Row, answer_group, group};
+use super::pairs::Contact;
+use super::scratch::Carry;
+use super::solve::{Mover, Row, group};
 use super::touch::{Touch, coefficients};
+use crate::body::Motion;
 use crate::response::friction_rate_per_step;
 use crate::world::World;
 
@@ -23,23 +26,28 @@ const EXACT: f64 = 1e-9;
 impl World {
     /// Answers all lasting contacts, and sets everybody off for the step.
     pub(crate) fn rest(&mut self, dt: f64) {
-        let touches = self.gather();
+        let mut touches = std::mem::take(&mut self.scratch.touches);
+        let mut carried = std::mem::take(&mut self.scratch.carried);
+        self.gather(&mut touches);
         let gravity = self.settings.gravity;
-        let mut carried = Vec::new();
-        for (slot, body) in self.bodies.iter_mut().enumerate() {
+        for slot in &self.awake {
+            let body = &mut self.bodies[*slot as usize];
             if body.rests {
                 continue;
             }
             if body.is_active() && body.contacts > 0 {
-                carried.push(slot);
+                carried.push(*slot as usize);
             } else if body.is_active() {
                 body.acceleration = gravity;
             }
         }
         self.carry(&touches, &carried, dt);
-        for body in &mut self.bodies {
-            body.look_ahead(dt);
+        for slot in &self.awake {
+            self.bodies[*slot as usize].look_ahead(dt);
         }
+        touches.clear();
+        carried.clear();
+        (self.scratch.touches, self.scratch.carried) = (touches, carried);
     }
 
     /// Takes the bodies `carried` through a stretch of `span` seconds that begins at their clocks.
@@ -49,74 +57,77 @@ impl World {
         let half = 0.5 * span;
         let kick = self.settings.gravity * half;
         let enough = 1e-4 * kick.length() + 1e-15;
-        let mut slots = carried.to_vec();
-        for slot in touches.iter().flat_map(|t| [t.a, t.b]) {
-            if !slots.contains(&slot) {
-                slots.push(slot);
-            }
-        }
-        let mut movers: Vec<Mover> = slots.iter().map(|s| Mover::new(&self.bodies[*s])).collect();
-        let mut rows = self.rows(touches, &slots, &movers, span);
-        let ends = group(&mut rows, &movers);
-        let before = movers.clone();
-        let mut passes = 0;
-        let mut answer = |movers: &mut [Mover], rows: &mut [Row]| {
-            for mover in &mut movers[..carried.len()] {
-                mover.linear += kick;
-            }
-            let mut start = 0;
-            for end in &ends {
-                passes += answer_group(&mut rows[start..*end], movers, &self.bodies, enough);
-                start = *end;
-            }
-        };
-        answer(&mut movers, &mut rows);
-        let middle = movers.clone();
-        rows.iter_mut().for_each(Row::renew);
-        answer(&mut movers, &mut rows);
+        let mut room = std::mem::take(&mut self.scratch.carry);
+        room.number(self.bodies.len(), carried, touches);
+        let movers = room.slots.iter().map(|s| Mover::new(&self.bodies[*s]));
+        room.movers.extend(movers);
+        self.rows(touches, &mut room, span);
+        group(&mut room);
+        room.before.extend(&room.movers);
+        let passes = room.answer(&self.bodies, carried.len(), kick, enough);
+        room.middle.extend(&room.movers);
+        room.rows.iter_mut().for_each(Row::renew);
+        let passes = passes + room.answer(&self.bodies, carried.len(), kick, enough);
         self.effort.passes += u64::from(passes);
-        for (i, slot) in slots.iter().enumerate() {
+        for (i, slot) in room.slots.iter().enumerate() {
             let body = &mut self.bodies[*slot];
             if !body.is_dynamic() {
                 continue;
             }
             let inertia = body.inertia();
+            let now = &room.movers[i];
             if i < carried.len() {
-                body.linear = middle[i].linear;
-                body.momentum = inertia * middle[i].angular;
-                let turned = inertia * (movers[i].angular - middle[i].angular);
-                body.bend = ((movers[i].linear - middle[i].linear) / half, turned / half);
+                let middle = &room.middle[i];
+                body.linear = middle.linear;
+                body.momentum = inertia * middle.angular;
+                let turned = inertia * (now.angular - middle.angular);
+                body.bend = ((now.linear - middle.linear) / half, turned / half);
                 body.middle = body.clock + half;
             } else {
-                body.linear += movers[i].linear - before[i].linear;
-                body.momentum += inertia * (movers[i].angular - before[i].angular);
+                let before = &room.before[i];
+                body.linear += now.linear - before.linear;
+                body.momentum += inertia * (now.angular - before.angular);
             }
         }
+        room.clear();
+        self.scratch.carry = room;
     }
 
     /// Lasting contacts of awake bodies, with their geometry; counts them per body.
-    fn gather(&mut self) -> Vec<Touch> {
-        for body in &mut self.bodies {
-            body.contacts = 0;
-            body.rests = false;
-        }
-        let mut touches = Vec::with_capacity(self.pairs.touching.len());
-        for key in self.pairs.touching.clone() {
-            let (a, b) = (key.a as usize, key.b as usize);
-            if !self.bodies[a].is_active() && !self.bodies[b].is_active() {
+    fn gather(&mut self, touches: &mut Vec<Touch>) {
+        let mut aged = std::mem::take(&mut self.scratch.aged);
+        for slot in &self.awake {
+            let slot = *slot as usize;
+            let body = &mut self.bodies[slot];
+            (body.contacts, body.rests) = (0, false);
+            if !body.is_active() {
                 continue;
             }
+            // Of two that are awake the first brings the contact.
+            let brings = |c: &&Contact| {
+                let other = c.key.other(slot);
+                other > slot || !self.bodies[other].is_active()
+            };
+            aged.extend(self.pairs.contacts(slot).iter().filter(brings));
+        }
+        aged.sort_unstable_by_key(|contact| contact.formed);
+        for Contact { key, .. } in aged.drain(..) {
             let touch = self.touch(key);
             if touch.gap > RELEASE {
                 self.part(key);
                 continue;
             }
-            self.bodies[a].contacts += 1;
-            self.bodies[b].contacts += 1;
+            for slot in [key.a as usize, key.b as usize] {
+                if self.bodies[slot].motion == Motion::Dynamic {
+                    self.bodies[slot].contacts += 1;
+                    self.rouse(slot);
+                }
+            }
             touches.push(touch);
         }
+        self.scratch.aged = aged;
+        self.awake.sort_unstable();
         touches.retain(|touch| !self.stands_still(touch));
-        touches
     }
 
     /// Whether the answer is known beforehand: a body at perfect rest on its base alone stays so.
@@ -146,15 +157,11 @@ impl World {
         true
     }
 
-    /// Contacts made ready for a stretch of `span` seconds.
-    fn rows(&self, touches: &[Touch], slots: &[usize], movers: &[Mover], span: f64) -> Vec<Row> {
-        let number = |slot: usize| {
-            let found = slots.iter().position(|s| *s == slot);
-            found.expect("the bodies of every touch are among the movers")
-        };
+    /// Makes the contacts ready for a stretch of `span` seconds.
+    fn rows(&self, touches: &[Touch], room: &mut Carry, span: f64) {
         let reference = self.settings.friction_reference_s;
         let mut known: Option<(f64, f64)> = None;
-        let make = |touch: &Touch| {
+        for touch in touches {
             let pair = coefficients(&self.bodies[touch.a], &self.bodies[touch.b]);
             // Most contacts of a scene share their friction rate: the power is taken once for all in a row.
             let rate = match known {
@@ -162,16 +169,14 @@ impl World {
                 _ => friction_rate_per_step(pair.friction_rate, 0.5 * span, reference),
             };
             known = Some((pair.friction_rate, rate));
-            let numbers = (number(touch.a), number(touch.b));
-            Row::new(
-                *touch,
-                numbers,
-                movers,
-                self.allowed_approach(touch, span),
-                rate,
-            )
-        };
-        touches.iter().map(make).collect()
+            let numbers = (
+                room.numbers[touch.a] as usize,
+                room.numbers[touch.b] as usize,
+            );
+            let allowed = self.allowed_approach(touch, span);
+            let row = Row::new(*touch, numbers, &room.movers, allowed, rate);
+            room.rows.push(row);
+        }
     }
 
     /// Largest approach speed that a contact may keep [m/s]; negative when it is to be pushed apart.

@@ -1,9 +1,9 @@
 //! When will two bodies touch: which of their parts are worth a look, and which of those comes first.
 
-use glam::DVec3;
+use std::cmp::Ordering;
 
 use super::approach::Approach;
-use super::pairs::{Key, PartPair};
+use super::pairs::Key;
 use super::touch::{Frame, place};
 use crate::body::Body;
 use crate::compound::Part;
@@ -16,23 +16,52 @@ use crate::world::World;
 pub(crate) struct Event {
     pub time: f64,
     pub key: Key,
+    /// Place in the order in which contacts were foreseen; of two at the same time the first comes first.
+    pub number: u64,
+    /// How often the bodies had changed their motion when it was foreseen; see `Body::changes`.
+    pub changes: (u32, u32),
 }
+
+/// The earliest is the greatest, so that a heap gives it first.
+impl Ord for Event {
+    fn cmp(&self, other: &Event) -> Ordering {
+        // Adding zero makes one of the two zeros.
+        let time = (other.time + 0.0).total_cmp(&(self.time + 0.0));
+        time.then(other.number.cmp(&self.number))
+    }
+}
+
+impl PartialOrd for Event {
+    fn partial_cmp(&self, other: &Event) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl PartialEq for Event {
+    fn eq(&self, other: &Event) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Event {}
 
 impl World {
     /// Earliest contact of two bodies after `t0`, both states standing at or before it.
-    pub(crate) fn first_contact(&mut self, a: usize, b: usize, t0: f64, dt: f64) -> Option<Event> {
-        let (a, b) = (a.min(b), a.max(b));
-        let (pose_a, pose_b) = self.near(a, b, t0)?;
+    pub(crate) fn first_contact(&mut self, pair: u32, t0: f64, dt: f64) -> Option<(f64, Key)> {
+        let entry = self.pairs.get(pair);
+        let (a, b) = (entry.a as usize, entry.b as usize);
+        let (pose_a, pose_b) = self.near(pair, t0)?;
         let (body_a, body_b) = (&self.bodies[a], &self.bodies[b]);
         let starts = (Frame::new(&pose_a), Frame::new(&pose_b));
         let ends = (Frame::new(&body_a.end), Frame::new(&body_b.end));
         let (ways, reach) = (body_a.path + body_b.path, body_a.reach + body_b.reach);
-        let mut first: Option<Event> = None;
+        let mut first: Option<(f64, Key)> = None;
         let mut clearance = f64::INFINITY;
-        for part in 0..self.pairs.get(a, b).parts.len() {
+        for part in 0..self.pairs.get(pair).parts.len() {
             let key = Key {
                 a: a as u32,
                 b: b as u32,
+                pair,
                 part: part as u32,
             };
             let known = self.pairs.part(key);
@@ -51,34 +80,39 @@ impl World {
             };
             clearance = clearance.min(entry.clearance);
             if let Some(time) = found.time
-                && first.is_none_or(|f| time < f.time)
+                && first.is_none_or(|f| time < f.0)
             {
-                first = Some(Event { time, key });
+                first = Some((time, key));
             }
         }
-        self.pairs.get_mut(a, b).clearance = clearance;
+        self.pairs.get_mut(pair).clearance = clearance;
         first
     }
 
     /// Poses of two bodies at `t0` if their parts have to be looked at; then the pairs of parts are listed.
-    fn near(&mut self, a: usize, b: usize, t0: f64) -> Option<(Pose, Pose)> {
-        let (body_a, body_b) = (&self.bodies[a], &self.bodies[b]);
+    fn near(&mut self, pair: u32, t0: f64) -> Option<(Pose, Pose)> {
+        let entry = self.pairs.get_mut(pair);
+        let (body_a, body_b) = (
+            &self.bodies[entry.a as usize],
+            &self.bodies[entry.b as usize],
+        );
         if !may_collide(body_a, body_b) {
             return None;
         }
         let (ways, reach) = (body_a.path + body_b.path, body_a.reach + body_b.reach);
-        let pair = self.pairs.get_mut(a, b);
-        if pair.clearance - ways > reach {
+        if entry.clearance - ways > reach {
             return None;
         }
         let (pose_a, pose_b) = (body_a.pose_at(t0), body_b.pose_at(t0));
         let rough = rough_gap(body_a, &pose_a, body_b, &pose_b);
         if rough > reach {
-            pair.clearance = rough + ways;
+            entry.clearance = rough + ways;
             return None;
         }
-        if pair.parts.is_empty() {
-            pair.parts = part_pairs(body_a, body_b, ways);
+        if entry.parts.is_empty() {
+            let count = |body: &Body| body.compound.parts().len();
+            let counts = (count(body_a), count(body_b));
+            self.pairs.list_parts(pair, counts, ways);
         }
         Some((pose_a, pose_b))
     }
@@ -92,26 +126,8 @@ fn may_collide(a: &Body, b: &Body) -> bool {
         && !(a.is_still() && b.is_still())
 }
 
-fn part_pairs(a: &Body, b: &Body, ways: f64) -> Vec<PartPair> {
-    let (count_a, count_b) = (a.compound.parts().len(), b.compound.parts().len());
-    let mut list = Vec::with_capacity(count_a * count_b);
-    for part_a in 0..count_a as u8 {
-        for part_b in 0..count_b as u8 {
-            list.push(PartPair {
-                part_a,
-                part_b,
-                normal: DVec3::ZERO,
-                clearance: ways + f64::MIN_POSITIVE - 1.0,
-                touching: false,
-                seen: None,
-            });
-        }
-    }
-    list
-}
-
 /// Lower bound of the gap between two bodies: one's bounding ball against the other's parts.
-fn rough_gap(a: &Body, pose_a: &Pose, b: &Body, pose_b: &Pose) -> f64 {
+pub(crate) fn rough_gap(a: &Body, pose_a: &Pose, b: &Body, pose_b: &Pose) -> f64 {
     let (radius_a, radius_b) = (a.compound.bounding_radius(), b.compound.bounding_radius());
     let apart = (pose_b.position - pose_a.position).length() - radius_a - radius_b;
     if apart > 0.0 {

@@ -1,6 +1,6 @@
 //! Rest: bodies that stopped are skipped until something touches them.
 
-use super::pairs::Key;
+use super::pairs::{Contact, Key};
 use crate::body::Motion;
 use crate::world::World;
 
@@ -14,6 +14,7 @@ impl World {
         let body = &mut self.bodies[slot];
         body.asleep = false;
         body.still_steps = 0;
+        self.rouse(slot);
     }
 
     /// Ends a lasting contact; what slept on it may fall now.
@@ -27,56 +28,68 @@ impl World {
 
     /// A driven body that moves wakes what it touches.
     pub(crate) fn wake_driven_neighbours(&mut self) {
-        for i in 0..self.pairs.touching.len() {
-            let key = self.pairs.touching[i];
+        let mut aged = std::mem::take(&mut self.scratch.aged);
+        for slot in &self.awake {
+            let body = &self.bodies[*slot as usize];
+            if body.motion == Motion::Driven && body.is_busy() {
+                aged.extend(self.pairs.contacts(*slot as usize));
+            }
+        }
+        aged.sort_unstable_by_key(|contact| contact.formed);
+        for Contact { key, .. } in aged.drain(..) {
             for (mover, other) in [(key.a, key.b), (key.b, key.a)] {
                 let body = &self.bodies[mover as usize];
-                let moves = body.motion == Motion::Driven
-                    && (body.linear != glam::DVec3::ZERO || body.turning != glam::DVec3::ZERO);
+                let moves = body.motion == Motion::Driven && body.is_busy();
                 if moves && self.bodies[other as usize].asleep {
                     self.disturb(other as usize);
                 }
             }
         }
+        self.scratch.aged = aged;
     }
 
     /// Puts groups of touching bodies to sleep when all of them have been quiet for a while.
     pub(crate) fn fall_asleep(&mut self, dt: f64) {
         let needed = (QUIET / dt).ceil() as u32;
-        let mut ready = vec![false; self.bodies.len()];
-        for (slot, body) in self.bodies.iter_mut().enumerate() {
+        let mut restless = std::mem::take(&mut self.scratch.restless);
+        for slot in &self.awake {
+            let body = &mut self.bodies[*slot as usize];
             if !body.is_active() {
-                ready[slot] = true;
                 continue;
             }
             let turning = body.angular_velocity().length() * body.compound.bounding_radius();
             let quiet = body.contacts > 0 && body.linear.length() + turning < QUIET_SPEED;
             body.still_steps = if quiet { body.still_steps + 1 } else { 0 };
-            ready[slot] = body.still_steps >= needed;
+            body.sleepy = body.still_steps >= needed;
+            if !body.sleepy {
+                restless.push(*slot);
+            }
         }
         // A body sleeps only with all that it touches.
-        loop {
-            let mut changed = false;
-            for key in &self.pairs.touching {
-                let (a, b) = (key.a as usize, key.b as usize);
-                let both_move = self.bodies[a].is_dynamic() && self.bodies[b].is_dynamic();
-                if both_move && ready[a] != ready[b] {
-                    (ready[a], ready[b]) = (false, false);
-                    changed = true;
+        while let Some(slot) = restless.pop() {
+            for i in 0..self.pairs.contacts(slot as usize).len() {
+                let other = self.pairs.contacts(slot as usize)[i]
+                    .key
+                    .other(slot as usize);
+                let body = &mut self.bodies[other];
+                if !body.is_dynamic() {
+                    continue;
                 }
-            }
-            if !changed {
-                break;
+                if body.asleep {
+                    self.wake(other);
+                } else if !std::mem::replace(&mut body.sleepy, false) {
+                    continue;
+                }
+                restless.push(other as u32);
             }
         }
-        for (slot, body) in self.bodies.iter_mut().enumerate() {
-            if body.is_active() && ready[slot] {
+        self.scratch.restless = restless;
+        for slot in &self.awake {
+            let body = &mut self.bodies[*slot as usize];
+            if body.is_active() && body.sleepy {
                 body.asleep = true;
+                body.sleepy = false;
                 body.halt();
-                body.reach = 0.0;
-            } else if body.asleep && !ready[slot] {
-                body.asleep = false;
-                body.still_steps = 0;
             }
         }
     }

@@ -7,6 +7,7 @@
 
 use glam::{DMat3, DVec3};
 
+use super::scratch::Carry;
 use super::touch::{Base, Touch};
 use crate::body::Body;
 use crate::response::compliance;
@@ -68,6 +69,9 @@ pub(crate) struct Row {
     pressed: f64,
     /// Change of velocities that a base gave so far, for undoing.
     given: (DVec3, DVec3),
+    /// Group that it belongs to, and its place in the order in which the contacts formed.
+    group: usize,
+    rank: usize,
 }
 
 impl Row {
@@ -90,6 +94,8 @@ impl Row {
             turns: zero,
             pressed: 0.0,
             given: zero,
+            group: 0,
+            rank: 0,
         };
         let rests_on_ground =
             touch.base.is_some() && !(all[movers.0].is_moved() && all[movers.1].is_moved());
@@ -245,12 +251,7 @@ impl Row {
 }
 
 /// Answers a group of rows that share bodies, until no pass changes a velocity by more than `enough` [m/s].
-pub(crate) fn answer_group(
-    rows: &mut [Row],
-    all: &mut [Mover],
-    bodies: &[Body],
-    enough: f64,
-) -> u32 {
+fn answer_group(rows: &mut [Row], all: &mut [Mover], bodies: &[Body], enough: f64) -> u32 {
     for row in rows.iter_mut().filter(|r| r.touch.base.is_none()) {
         row.rub(all);
     }
@@ -275,37 +276,86 @@ pub(crate) fn answer_group(
     passes * rows.len() as u32
 }
 
-/// Sorts rows into groups that share no moved body, each in its old order; returns the groups' ends.
-pub(crate) fn group(rows: &mut [Row], all: &[Mover]) -> Vec<usize> {
-    let mut label: Vec<usize> = (0..all.len()).collect();
-    loop {
-        let mut changed = false;
-        for row in rows.iter() {
-            let (a, b) = row.movers;
-            if !all[a].is_moved() || !all[b].is_moved() {
-                continue;
+impl Carry {
+    /// Numbers the bodies: those `carried` first, then all others of the `touches`.
+    pub fn number(&mut self, count: usize, carried: &[usize], touches: &[Touch]) {
+        self.numbers.resize(count, NONE);
+        let others = touches.iter().flat_map(|t| [t.a, t.b]);
+        for slot in carried.iter().copied().chain(others) {
+            if self.numbers[slot] == NONE {
+                self.numbers[slot] = self.slots.len() as u32;
+                self.slots.push(slot);
             }
-            let low = label[a].min(label[b]);
-            changed |= label[a] != low || label[b] != low;
-            (label[a], label[b]) = (low, low);
-        }
-        if !changed {
-            break;
         }
     }
-    let of = |row: &Row| {
-        label[if all[row.movers.0].is_moved() {
-            row.movers.0
-        } else {
-            row.movers.1
-        }]
-    };
-    rows.sort_by_key(of);
-    let mut ends = Vec::new();
+
+    /// Half of gravity's kick for the first `carried` movers, then an answer of all rows; returns the passes.
+    pub fn answer(&mut self, bodies: &[Body], carried: usize, kick: DVec3, enough: f64) -> u32 {
+        for mover in &mut self.movers[..carried] {
+            mover.linear += kick;
+        }
+        let (mut start, mut passes) = (0, 0);
+        for end in &self.ends {
+            let rows = &mut self.rows[start..*end];
+            passes += answer_group(rows, &mut self.movers, bodies, enough);
+            start = *end;
+        }
+        passes
+    }
+
+    /// Empties all lists for the next stretch.
+    pub fn clear(&mut self) {
+        for slot in self.slots.drain(..) {
+            self.numbers[slot] = NONE;
+        }
+        self.movers.clear();
+        self.before.clear();
+        self.middle.clear();
+        self.rows.clear();
+        self.labels.clear();
+        self.ends.clear();
+    }
+}
+
+/// No number.
+const NONE: u32 = u32::MAX;
+
+/// Sorts rows into groups that share no moved body, each in its old order, and notes the groups' ends.
+pub(crate) fn group(room: &mut Carry) {
+    let Carry {
+        movers,
+        rows,
+        labels,
+        ends,
+        ..
+    } = room;
+    // Every body's label leads on to a smaller one of its group, down to the smallest.
+    labels.extend(0..movers.len());
+    for (i, row) in rows.iter_mut().enumerate() {
+        row.rank = i;
+        let (a, b) = row.movers;
+        if movers[a].is_moved() && movers[b].is_moved() {
+            let (a, b) = (least(labels, a), least(labels, b));
+            labels[a.max(b)] = a.min(b);
+        }
+    }
+    for row in rows.iter_mut() {
+        let (a, b) = row.movers;
+        row.group = least(labels, if movers[a].is_moved() { a } else { b });
+    }
+    rows.sort_unstable_by_key(|row| (row.group, row.rank));
     for i in 1..=rows.len() {
-        if i == rows.len() || of(&rows[i]) != of(&rows[i - 1]) {
+        if i == rows.len() || rows[i].group != rows[i - 1].group {
             ends.push(i);
         }
     }
-    ends
+}
+
+/// The smallest label of a group; shortens the way to it.
+fn least(labels: &mut [usize], mut i: usize) -> usize {
+    while labels[i] != i {
+        labels[i] = labels[labels[i]];
+        i = labels[i];
+    }
+    i
 }

@@ -200,14 +200,12 @@ impl World {
     /// The contact `key` at the bodies' current poses; remembers its normal.
     pub(crate) fn touch(&mut self, key: Key) -> Touch {
         let (a, b) = (key.a as usize, key.b as usize);
-        let known = self.pairs.part(key);
         let (body_a, body_b) = (&self.bodies[a], &self.bodies[b]);
-        if let Some((way_a, way_b, touch)) = known.seen
-            && (way_a, way_b) == (body_a.path, body_b.path)
-        {
+        let ways = (body_a.path, body_b.path);
+        if let Some(touch) = self.pairs.seen(key, ways) {
             return touch;
         }
-        let ways = (body_a.path, body_b.path);
+        let known = self.pairs.part(key);
         let part_a = &body_a.compound.parts()[known.part_a as usize];
         let part_b = &body_b.compound.parts()[known.part_b as usize];
         let (placed_a, placed_b) = (place(part_a, &body_a.pose()), place(part_b, &body_b.pose()));
@@ -226,9 +224,8 @@ impl World {
             on_base: base.is_some() || is_on_edge(&placed_a, &placed_b, found.normal),
         };
         touch.set_point((found.point_a + found.point_b) * 0.5, &self.bodies);
-        let entry = self.pairs.part_mut(key);
-        entry.normal = found.normal;
-        entry.seen = Some((ways.0, ways.1, touch));
+        self.pairs.part_mut(key).normal = found.normal;
+        self.pairs.remember(key, ways, touch);
         touch
     }
 }
