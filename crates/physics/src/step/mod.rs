@@ -6,6 +6,7 @@ pub(crate) mod scratch;
 
 mod approach;
 mod events;
+mod islands;
 mod queue;
 mod rest;
 mod search;
@@ -43,15 +44,9 @@ impl World {
         self.awake.sort_unstable();
         self.rest(dt);
         self.run_events(dt);
-        for slot in &self.awake {
-            let body = &mut self.bodies[*slot as usize];
-            body.advance(dt, dt);
-            body.straighten();
-            body.fresh = false;
-            body.clock = 0.0;
-            (body.blows, body.squeezed) = (0, false);
+        for i in 0..self.awake.len() {
+            self.end_step(self.awake[i] as usize, dt);
         }
-        self.freeze_broken();
         if self.settings.sleeping {
             self.fall_asleep(dt);
         }
@@ -97,21 +92,18 @@ impl World {
         (self.settings.gravity.length() / 360.0).max(1e-4)
     }
 
-    fn freeze_broken(&mut self) {
-        for i in 0..self.awake.len() {
-            let slot = self.awake[i] as usize;
-            let body = &mut self.bodies[slot];
-            if body.is_finite() {
-                body.last_finite = body.pose();
-            } else {
-                self.freeze(slot);
-            }
-        }
-    }
-
-    /// Stops a body whose state is no state any more, where it last was.
-    fn freeze(&mut self, slot: usize) {
+    /// Brings a body to the end of the step; one whose state is no state any more stops where it last was.
+    fn end_step(&mut self, slot: usize, dt: f64) {
         let body = &mut self.bodies[slot];
+        body.advance(dt, dt);
+        body.straighten();
+        body.fresh = false;
+        body.clock = 0.0;
+        (body.blows, body.squeezed) = (0, false);
+        if body.is_finite() {
+            body.last_finite = body.pose();
+            return;
+        }
         body.position = body.last_finite.position;
         body.rotation = body.last_finite.rotation;
         body.path = 0.0;

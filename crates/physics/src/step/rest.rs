@@ -10,7 +10,7 @@
 use glam::DVec3;
 
 use super::RELEASE;
-use super::pairs::Contact;
+use super::pairs::{Contact, Key};
 use super::scratch::Carry;
 use super::solve::{Mover, Row, group};
 use super::touch::{Touch, coefficients};
@@ -26,9 +26,9 @@ const EXACT: f64 = 1e-9;
 impl World {
     /// Answers all lasting contacts, and sets everybody off for the step.
     pub(crate) fn rest(&mut self, dt: f64) {
-        let mut touches = std::mem::take(&mut self.scratch.touches);
-        let mut carried = std::mem::take(&mut self.scratch.carried);
-        self.gather(&mut touches);
+        let mut lasting = std::mem::take(&mut self.scratch.aged);
+        let mut carried = std::mem::take(&mut self.scratch.found);
+        self.gather(&mut lasting);
         let gravity = self.settings.gravity;
         for slot in &self.awake {
             let body = &mut self.bodies[*slot as usize];
@@ -36,18 +36,18 @@ impl World {
                 continue;
             }
             if body.is_active() && body.contacts > 0 {
-                carried.push(*slot as usize);
+                carried.push(*slot);
             } else if body.is_active() {
                 body.acceleration = gravity;
             }
         }
-        self.carry(&touches, &carried, dt);
+        self.carry_islands(&lasting, &carried, dt);
         for slot in &self.awake {
             self.bodies[*slot as usize].look_ahead(dt);
         }
-        touches.clear();
+        lasting.clear();
         carried.clear();
-        (self.scratch.touches, self.scratch.carried) = (touches, carried);
+        (self.scratch.aged, self.scratch.found) = (lasting, carried);
     }
 
     /// Takes the bodies `carried` through a stretch of `span` seconds that begins at their clocks.
@@ -93,9 +93,8 @@ impl World {
         self.scratch.carry = room;
     }
 
-    /// Lasting contacts of awake bodies, with their geometry; counts them per body.
-    fn gather(&mut self, touches: &mut Vec<Touch>) {
-        let mut aged = std::mem::take(&mut self.scratch.aged);
+    /// Lasting contacts of awake bodies that have to be answered, by age; counts them per body.
+    fn gather(&mut self, lasting: &mut Vec<Contact>) {
         for slot in &self.awake {
             let slot = *slot as usize;
             let body = &mut self.bodies[slot];
@@ -108,14 +107,14 @@ impl World {
                 let other = c.key.other(slot);
                 other > slot || !self.bodies[other].is_active()
             };
-            aged.extend(self.pairs.contacts(slot).iter().filter(brings));
+            lasting.extend(self.pairs.contacts(slot).iter().filter(brings));
         }
-        aged.sort_unstable_by_key(|contact| contact.formed);
-        for Contact { key, .. } in aged.drain(..) {
-            let touch = self.touch(key);
-            if touch.gap > RELEASE {
-                self.part(key);
-                continue;
+        lasting.sort_unstable_by_key(|contact| contact.formed);
+        lasting.retain(|Contact { key, .. }| {
+            let lasts = self.touch(*key).gap <= RELEASE;
+            if !lasts {
+                self.part(*key);
+                return false;
             }
             for slot in [key.a as usize, key.b as usize] {
                 if self.bodies[slot].motion == Motion::Dynamic {
@@ -123,17 +122,17 @@ impl World {
                     self.rouse(slot);
                 }
             }
-            touches.push(touch);
-        }
-        self.scratch.aged = aged;
+            true
+        });
         self.awake.sort_unstable();
-        touches.retain(|touch| !self.stands_still(touch));
+        lasting.retain(|contact| !self.stands_still(contact.key));
     }
 
     /// Whether the answer is known beforehand: a body at perfect rest on its base alone stays so.
     ///
     /// It is what the rows would find, to the bit, and what most pins do most of the time.
-    fn stands_still(&mut self, touch: &Touch) -> bool {
+    fn stands_still(&mut self, key: Key) -> bool {
+        let touch = self.touch(key);
         let Some(base) = touch.base else { return false };
         let (own, other) = if base.of_a {
             (touch.a, touch.b)

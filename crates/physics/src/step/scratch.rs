@@ -2,6 +2,8 @@
 
 use std::collections::BinaryHeap;
 
+use super::islands::Islands;
+use super::pairs::Contact;
 use super::search::Event;
 use super::solve::{Mover, Row};
 use super::touch::Touch;
@@ -13,7 +15,7 @@ pub(crate) struct Scratch {
     pub served: Vec<u32>,
     /// The body that looks, the other, and their pair.
     pub due: Vec<(u32, u32, u32)>,
-    /// Way through the tree of boxes, and what it leads to.
+    /// Way through the tree of boxes, and what it leads to; before that, bodies that something carries.
     pub stack: Vec<u32>,
     pub found: Vec<u32>,
     pub events: BinaryHeap<Event>,
@@ -21,8 +23,9 @@ pub(crate) struct Scratch {
     pub touches: Vec<Touch>,
     pub carried: Vec<usize>,
     pub carry: Carry,
+    pub islands: Islands,
     /// Contacts with their age, or bodies to go on with.
-    pub aged: Vec<super::pairs::Contact>,
+    pub aged: Vec<Contact>,
     pub restless: Vec<u32>,
 }
 
