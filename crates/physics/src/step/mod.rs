@@ -72,7 +72,7 @@ impl World {
     }
 
     /// Takes those off the list that have become idle.
-    fn dismiss(&mut self) {
+    pub(super) fn dismiss(&mut self) {
         let bodies = &mut self.bodies;
         self.awake.retain(|slot| {
             let body = &mut bodies[*slot as usize];
@@ -93,7 +93,7 @@ impl World {
     }
 
     /// Brings a body to the end of the step; one whose state is no state any more stops where it last was.
-    fn end_step(&mut self, slot: usize, dt: f64) {
+    pub(super) fn end_step(&mut self, slot: usize, dt: f64) {
         let body = &mut self.bodies[slot];
         body.advance(dt, dt);
         body.straighten();

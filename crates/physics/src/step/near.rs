@@ -19,7 +19,7 @@ use crate::query::Placed;
 use crate::world::World;
 
 /// Margin of a box: that many of the ways of a step, and a least width [m].
-const MARGIN: (f64, f64) = (8.0, 1e9);
+const MARGIN: (f64, f64) = (8.0, 0.02);
 /// Distance at which bodies that were within reach of each other are forgotten as a pair [m].
 const FORGET: f64 = 1.0;
 /// A new pace is that much more than what the body needs now.
@@ -213,3 +213,6 @@ fn tight(part: &Placed) -> Bounds {
         high: DVec3::new(high(DVec3::X), high(DVec3::Y), high(DVec3::Z)),
     }
 }
+
+#[cfg(test)]
+mod tests;
