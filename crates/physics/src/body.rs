@@ -11,6 +11,7 @@ use crate::compound::Compound;
 use crate::pose::Pose;
 
 pub use def::{BodyDef, MassProperties, Material, Motion};
+pub(crate) use motion::{Sweep, turn};
 
 /// A body in a world. Read it here, change it through the world.
 #[derive(Clone, Debug)]

@@ -50,6 +50,7 @@
 //! ```
 #![cfg_attr(test, allow(clippy::disallowed_methods))]
 
+pub mod advance;
 mod body;
 mod compound;
 mod hash;

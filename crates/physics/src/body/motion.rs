@@ -15,45 +15,58 @@ pub(crate) struct Sweep {
     pub acceleration: f64,
 }
 
+impl Sweep {
+    const STILL: Sweep = Sweep {
+        turning: 0.0,
+        acceleration: 0.0,
+    };
+
+    /// Bounds for a surface within `radius` [m] that turns about its own axis and across it [rad/s].
+    ///
+    /// A turn of an axisymmetric body about its own axis does not move its surface; it still turns the axis of the
+    /// turn across, and so bends the ways of the surface.
+    pub fn new(along: f64, across: f64, radius: f64) -> Sweep {
+        if across == 0.0 {
+            return Sweep::STILL;
+        }
+        // The largest stretch of the matrix [w']x + [w]x^2, with w across the axis and w' = w along.
+        let bend = 0.5 * across * (across + (across * across + 4.0 * along * along).sqrt());
+        Sweep {
+            turning: across * radius,
+            acceleration: bend * radius,
+        }
+    }
+}
+
 impl Body {
     /// Bounds for the current motion.
     pub(crate) fn sweep(&self) -> Sweep {
-        let radius = self.compound.bounding_radius();
-        let (total, across) = self.turning_rates();
-        let turning = if across == 0.0 { 0.0 } else { across * radius };
-        let bend = if across == 0.0 {
-            0.0
-        } else {
-            total * across * radius
-        };
-        Sweep {
-            turning,
-            acceleration: bend + self.acceleration.length(),
-        }
+        let mut sweep = self.sweep_of_turning();
+        sweep.acceleration += self.acceleration.length();
+        sweep
     }
 
-    /// Rate of turning, and the part of it that moves the surface [rad/s].
-    ///
-    /// A turn of an axisymmetric body about its own axis does not move its surface: only the part of the precession
-    /// across the axis counts.
-    fn turning_rates(&self) -> (f64, f64) {
+    fn sweep_of_turning(&self) -> Sweep {
         let symmetry = self.compound.symmetry();
-        if symmetry == Symmetry::Full {
-            return (0.0, 0.0);
-        }
+        let radius = self.compound.bounding_radius();
+        let i = self.mass.inertia;
         match self.motion {
-            Motion::Fixed => (0.0, 0.0),
-            Motion::Driven => (self.turning.length(), self.turning.length()),
+            Motion::Fixed => Sweep::STILL,
+            _ if symmetry == Symmetry::Full => Sweep::STILL,
+            Motion::Driven => Sweep::new(0.0, self.turning.length(), radius),
+            Motion::Dynamic if symmetry == Symmetry::Axis && i.x == i.z => {
+                let axis = self.rotation * DVec3::Y;
+                let along = axis.dot(self.momentum);
+                let across = self.momentum - axis * along;
+                Sweep::new(along / i.x, across.length() / i.x, radius)
+            }
             Motion::Dynamic => {
-                let i = self.mass.inertia;
-                if symmetry == Symmetry::Axis && i.x == i.z {
-                    let axis = self.rotation * DVec3::Y;
-                    let across = self.momentum - axis * axis.dot(self.momentum);
-                    (self.momentum.length() / i.x, across.length() / i.x)
-                } else {
-                    let rate = self.momentum.length() / i.min_element();
-                    (rate, rate)
-                }
+                let rate = self.momentum.length() / i.min_element();
+                let mut sweep = Sweep::new(0.0, rate, radius);
+                // Euler's equations: the rate itself changes by no more than this share of its square.
+                let spread = (i.max_element() - i.min_element()) / i.min_element();
+                sweep.acceleration *= 1.0 + (0.578 * spread).min(1.0);
+                sweep
             }
         }
     }

@@ -1,15 +1,14 @@
 //! When will two parts touch: conservative advancement along the separating normal.
 //!
-//! For a fixed normal n the gap `s_n(t)` between the tangent planes is a lower bound of the distance at every time.
-//! Each point of a body moves with an acceleration of at most c, so between two times with `s_n = s0, s1`
-//! `s_n >= lerp(s0, s1) - c (t - t0) (t1 - t) / 2`, kinks of the shape included. Two evaluations so prove most pairs
-//! apart for the whole step; otherwise the root of `s_n` is the next time to look, with a new n.
+//! What a normal proves over a stretch of time is in `advance/stretch.rs`; here are the motions of a step, and what a
+//! lasting contact makes different.
 
 use glam::DVec3;
 
 use super::pairs::Key;
 use super::touch::{Frame, place};
 use super::{CONTACT, SINK};
+use crate::advance::{Grade, Held, hold};
 use crate::body::Body;
 use crate::compound::Part;
 use crate::query::{Placed, distance_to_point, gap_along};
@@ -178,19 +177,18 @@ impl<'a> Approach<'a> {
             };
             gap_along(&a, &b, self.normal) - floor
         };
-        let (s0, s1) = (self.gap - floor, at(self.end));
-        if s1 > 0.0 {
-            let span = self.end - self.time;
-            let dip = 0.125 * self.bend * span * span - s0.min(s1);
-            return if dip < DIP && self.end == self.dt {
-                Bound::Apart
-            } else if dip < DIP {
-                Bound::Until(self.end)
-            } else {
-                Bound::Unclear
-            };
-        }
-        let root = last_apart(&at, (self.time, s0), (self.end, s1));
+        let start = (self.time, self.gap - floor);
+        let grade = Grade {
+            bend: self.bend,
+            dip: DIP,
+            enough: 0.5 * CONTACT,
+        };
+        let root = match hold(&at, start, self.end, &grade) {
+            Held::Through if self.end == self.dt => return Bound::Apart,
+            Held::Through => return Bound::Until(self.end),
+            Held::Unclear => return Bound::Unclear,
+            Held::Until(root) => root,
+        };
         if self.fresh && floor != 0.0 {
             Bound::Contact(root)
         } else if self.fresh && root <= self.time {
@@ -237,7 +235,7 @@ impl<'a> Approach<'a> {
 }
 
 /// Lower bound of the gap between two parts.
-fn part_gap(a: &Placed, part_a: &Part, b: &Placed, part_b: &Part) -> f64 {
+pub(crate) fn part_gap(a: &Placed, part_a: &Part, b: &Placed, part_b: &Part) -> f64 {
     let apart = (b.position - a.position).length() - part_a.radius - part_b.radius;
     if apart > 0.0 {
         return apart;
@@ -247,31 +245,4 @@ fn part_gap(a: &Placed, part_a: &Part, b: &Placed, part_b: &Part) -> f64 {
     } else {
         distance_to_point(a, b.position).map_or(apart, |d| d - part_b.radius)
     }
-}
-
-/// Latest time found before the gap `at` falls to zero between `low` (apart) and `high` (not), by regula falsi.
-fn last_apart(at: &impl Fn(f64) -> f64, low: (f64, f64), high: (f64, f64)) -> f64 {
-    let ((mut t0, mut s0), (mut t1, mut s1)) = (low, high);
-    if s0 <= 0.0 {
-        return t0;
-    }
-    let mut weight = (s0, s1);
-    for i in 0..40 {
-        if s0 <= 0.5 * CONTACT || t1 - t0 < 1e-12 {
-            break;
-        }
-        let mut t = t0 + (t1 - t0) * weight.0 / (weight.0 - weight.1);
-        if i % 4 == 3 || !(t > t0 && t < t1) {
-            t = 0.5 * (t0 + t1);
-        }
-        let s = at(t);
-        if s > 0.0 {
-            (t0, s0) = (t, s);
-            weight = (s0, 0.5 * weight.1);
-        } else {
-            (t1, s1) = (t, s);
-            weight = (0.5 * weight.0, s1);
-        }
-    }
-    t0
 }

@@ -15,6 +15,9 @@ mod solve;
 mod touch;
 mod tree;
 
+pub(crate) use approach::part_gap;
+pub(crate) use touch::place;
+
 use glam::DVec3;
 
 use crate::world::World;

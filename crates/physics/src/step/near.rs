@@ -14,6 +14,7 @@ use glam::DVec3;
 use super::search::rough_gap;
 use super::touch::place;
 use super::tree::{Bounds, Tree};
+use crate::advance::time_to_close;
 use crate::body::{Body, Motion};
 use crate::query::Placed;
 use crate::world::World;
@@ -97,7 +98,7 @@ impl World {
             return;
         }
         // One step for what is left of this one, one for the step that is served, by then all may be used up.
-        let steps = (slack / pace - 2.0).max(0.0);
+        let steps = (time_to_close(slack, pace, 0.0) - 2.0).max(0.0);
         self.pairs.queue.put(pair, steps as u64);
     }
 

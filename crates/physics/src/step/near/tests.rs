@@ -49,7 +49,7 @@ impl Random {
             // Two of the building: a lane, and the ground.
             40 => Compound::single(Shape::cuboid(DVec3::new(0.5, 0.1, 10.0)).unwrap()),
             41 => Compound::single(Shape::half_space(DVec3::Y).unwrap()),
-            _ if kind % 3 == 0 => {
+            _ if kind.is_multiple_of(3) => {
                 let other = (
                     Pose::from_position(DVec3::Y * 0.2),
                     shape(kind / 3).unwrap(),
