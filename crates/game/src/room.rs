@@ -215,7 +215,7 @@ impl<'a> Builder<'a> {
             };
             if part.is_solid {
                 let shape = Shape::cuboid(part.size / 2.0)?;
-                let compound = Arc::new(Compound::single(shape));
+                let compound = Arc::new(Compound::single(shape.clone()));
                 self.body(compound, Motion::Fixed, immovable(), part.pose, shown);
                 obstacles.push((part.pose, part.size / 2.0, shape));
             } else {

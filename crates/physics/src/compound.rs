@@ -16,7 +16,7 @@ pub(crate) enum Symmetry {
 }
 
 /// One convex part with its pose in the body frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Part {
     /// Shape, in the part's frame.
     pub shape: Shape,
@@ -54,11 +54,11 @@ impl Compound {
         let parts: Vec<Part> = parts
             .into_iter()
             .map(|(pose, shape)| Part {
+                radius: shape.bounding_radius(),
                 shape,
                 pose,
                 rotation: DMat3::from_quat(pose.rotation),
                 is_square: pose.rotation == DQuat::IDENTITY,
-                radius: shape.bounding_radius(),
             })
             .collect();
         let reach = |part: &Part| part.pose.position.length() + part.radius;
@@ -122,8 +122,8 @@ mod tests {
         let ball = Shape::sphere(0.1).unwrap();
         let disc = Shape::cylinder(0.1, 0.02).unwrap();
         let up = |y| Pose::from_position(DVec3::new(0.0, y, 0.0));
-        assert_eq!(Compound::single(ball).symmetry(), Symmetry::Full);
-        let pin = Compound::new(vec![(up(-0.1), disc), (up(0.2), ball)]).unwrap();
+        assert_eq!(Compound::single(ball.clone()).symmetry(), Symmetry::Full);
+        let pin = Compound::new(vec![(up(-0.1), disc), (up(0.2), ball.clone())]).unwrap();
         assert_eq!(pin.symmetry(), Symmetry::Axis);
         assert!((pin.bounding_radius() - 0.3).abs() < 1e-15);
         let aside = Compound::new(vec![(Pose::from_position(DVec3::X), ball)]).unwrap();

@@ -1,7 +1,9 @@
 //! Convex parametric primitives, validated once when they are made.
 //!
-//! Each shape is the hull of a few *pieces*: ellipsoids, discs and points are all one form, a centre with three
-//! semi-axes of which some may be zero. `piece.rs` evaluates them; the detection in `query` knows nothing else.
+//! A shape is its sizes and what follows from them once and for all; `query::cores` puts it into a frame for the
+//! detection.
+
+use std::sync::Arc;
 
 use glam::DVec3;
 use thiserror::Error;
@@ -32,6 +34,17 @@ pub enum ShapeError {
     /// A half-space needs a direction.
     #[error("half-space: the normal must be a finite, non-zero vector, not {0}")]
     BadNormal(DVec3),
+    /// A cloud without points has no hull.
+    #[error("vertex cloud: at least one point is needed")]
+    NoPoints,
+    /// A point of a cloud was not finite.
+    #[error("vertex cloud: point {index} is not finite: {point}")]
+    BadPoint {
+        /// Which point, from 0.
+        index: usize,
+        /// What was given [m].
+        point: DVec3,
+    },
     /// A compound without parts has no surface.
     #[error("a compound needs at least one part")]
     NoParts,
@@ -44,13 +57,45 @@ pub enum ShapeError {
 }
 
 /// A convex primitive in its own frame; the axis of revolution, where there is one, is y.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Shape {
     pub(crate) kind: Kind,
+    /// Radius of the smallest ball about the origin that holds the shape [m].
+    radius: f64,
+}
+
+/// Two coaxial discs at heights on the y axis, of which a frustum is the hull; radii of zero make a segment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Profile {
+    /// Radii of the lower and the upper disc [m].
+    pub radius: [f64; 2],
+    /// Their heights [m].
+    pub height: [f64; 2],
+    /// Unit normal of the mantle: across the axis and along it.
+    pub mantle: (f64, f64),
+    /// Length of the mantle from disc to disc [m].
+    pub slant: f64,
+}
+
+impl Profile {
+    fn new(bottom: f64, top: f64, half_height: f64) -> Profile {
+        let (rise, widening) = (2.0 * half_height, top - bottom);
+        let slant = (rise * rise + widening * widening).sqrt();
+        Profile {
+            radius: [bottom, top],
+            height: [-half_height, half_height],
+            mantle: (rise / slant, -widening / slant),
+            slant,
+        }
+    }
+
+    pub fn half_height(&self) -> f64 {
+        self.height[1]
+    }
 }
 
 /// The closed set of primitives, with sizes in metres that the constructors have checked.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Kind {
     Sphere {
         radius: f64,
@@ -66,20 +111,21 @@ pub(crate) enum Kind {
     },
     Capsule {
         radius: f64,
-        half_height: f64,
+        segment: Profile,
     },
-    /// Hull of two discs at y = -half_height and y = +half_height.
-    Frustum {
-        bottom: f64,
-        top: f64,
-        half_height: f64,
-    },
+    /// Hull of two discs: cylinder, cone, frustum.
+    Frustum(Profile),
     Cuboid {
         half: DVec3,
     },
     /// All points with `normal . p <= 0`.
     HalfSpace {
         normal: DVec3,
+    },
+    /// Hull of the points; `centre` is their mean.
+    Cloud {
+        points: Arc<[DVec3]>,
+        centre: DVec3,
     },
 }
 
@@ -99,15 +145,18 @@ fn lengths(shape: &'static str, names: [&'static str; 3], v: DVec3) -> Result<DV
 }
 
 impl Shape {
+    fn new(kind: Kind) -> Shape {
+        let radius = bounding_radius(&kind);
+        Shape { kind, radius }
+    }
+
     /// A ball of `radius` [m] about the origin.
     ///
     /// # Errors
     /// `ShapeError::BadLength` on a radius that is not positive and finite.
     pub fn sphere(radius: f64) -> Result<Shape, ShapeError> {
         let radius = length("sphere", "radius", radius)?;
-        Ok(Shape {
-            kind: Kind::Sphere { radius },
-        })
+        Ok(Shape::new(Kind::Sphere { radius }))
     }
 
     /// An ellipsoid about the origin with semi-axes along x, y and z [m].
@@ -120,9 +169,7 @@ impl Shape {
             ["semi-axis x", "semi-axis y", "semi-axis z"],
             semi,
         )?;
-        Ok(Shape {
-            kind: Kind::Ellipsoid { semi },
-        })
+        Ok(Shape::new(Kind::Ellipsoid { semi }))
     }
 
     /// An ellipsoid about the origin of which only the part with y >= `cut` [m] is left, -semi.y < `cut` < 0.
@@ -143,9 +190,7 @@ impl Shape {
         }
         let shrink = (1.0 - (cut / semi.y) * (cut / semi.y)).sqrt();
         let rim = DVec3::new(semi.x * shrink, 0.0, semi.z * shrink);
-        Ok(Shape {
-            kind: Kind::TruncatedEllipsoid { semi, cut, rim },
-        })
+        Ok(Shape::new(Kind::TruncatedEllipsoid { semi, cut, rim }))
     }
 
     /// All points within `radius` [m] of the segment from y = -`half_height` to y = `half_height` [m].
@@ -155,12 +200,10 @@ impl Shape {
     pub fn capsule(radius: f64, half_height: f64) -> Result<Shape, ShapeError> {
         let radius = length("capsule", "radius", radius)?;
         let half_height = length("capsule", "half height", half_height)?;
-        Ok(Shape {
-            kind: Kind::Capsule {
-                radius,
-                half_height,
-            },
-        })
+        Ok(Shape::new(Kind::Capsule {
+            radius,
+            segment: Profile::new(0.0, 0.0, half_height),
+        }))
     }
 
     /// A cylinder about the origin: `radius` and `half_height` along y [m].
@@ -170,13 +213,19 @@ impl Shape {
     pub fn cylinder(radius: f64, half_height: f64) -> Result<Shape, ShapeError> {
         let radius = length("cylinder", "radius", radius)?;
         let half_height = length("cylinder", "half height", half_height)?;
-        Ok(Shape {
-            kind: Kind::Frustum {
-                bottom: radius,
-                top: radius,
-                half_height,
-            },
-        })
+        let profile = Profile::new(radius, radius, half_height);
+        Ok(Shape::new(Kind::Frustum(profile)))
+    }
+
+    /// A cone about the origin: a disc of `radius` at y = -`half_height`, the apex at y = `half_height` [m].
+    ///
+    /// # Errors
+    /// `ShapeError::BadLength` on a size that is not positive and finite.
+    pub fn cone(radius: f64, half_height: f64) -> Result<Shape, ShapeError> {
+        let radius = length("cone", "radius", radius)?;
+        let half_height = length("cone", "half height", half_height)?;
+        let profile = Profile::new(radius, 0.0, half_height);
+        Ok(Shape::new(Kind::Frustum(profile)))
     }
 
     /// A cone cut at both ends: radii at y = -`half_height` and y = `half_height` [m]; one of them may be zero.
@@ -191,13 +240,8 @@ impl Shape {
         if top != 0.0 || bottom == 0.0 {
             length("frustum", "top radius", top)?;
         }
-        Ok(Shape {
-            kind: Kind::Frustum {
-                bottom,
-                top,
-                half_height,
-            },
-        })
+        let profile = Profile::new(bottom, top, half_height);
+        Ok(Shape::new(Kind::Frustum(profile)))
     }
 
     /// A box about the origin with half extents along x, y and z [m].
@@ -210,9 +254,7 @@ impl Shape {
             ["half extent x", "half extent y", "half extent z"],
             half,
         )?;
-        Ok(Shape {
-            kind: Kind::Cuboid { half },
-        })
+        Ok(Shape::new(Kind::Cuboid { half }))
     }
 
     /// Everything below the plane through the origin with this outward `normal` (any length).
@@ -221,11 +263,28 @@ impl Shape {
     /// `ShapeError::BadNormal` on a zero or non-finite normal.
     pub fn half_space(normal: DVec3) -> Result<Shape, ShapeError> {
         match normal.try_normalize() {
-            Some(normal) if normal.is_finite() => Ok(Shape {
-                kind: Kind::HalfSpace { normal },
-            }),
+            Some(normal) if normal.is_finite() => Ok(Shape::new(Kind::HalfSpace { normal })),
             _ => Err(ShapeError::BadNormal(normal)),
         }
+    }
+
+    /// The hull of a cloud of vertices [m].
+    ///
+    /// # Errors
+    /// `ShapeError::NoPoints` without any, `ShapeError::BadPoint` on one that is not finite.
+    pub fn cloud(points: &[DVec3]) -> Result<Shape, ShapeError> {
+        if points.is_empty() {
+            return Err(ShapeError::NoPoints);
+        }
+        if let Some(index) = points.iter().position(|p| !p.is_finite()) {
+            let point = points[index];
+            return Err(ShapeError::BadPoint { index, point });
+        }
+        let centre = points.iter().copied().sum::<DVec3>() / points.len() as f64;
+        Ok(Shape::new(Kind::Cloud {
+            points: points.into(),
+            centre,
+        }))
     }
 
     /// Farthest point of the shape along `direction` (any length), in the shape's frame [m].
@@ -240,40 +299,45 @@ impl Shape {
     }
 
     /// Radius of the smallest ball about the origin that holds the shape [m]; infinite for a half-space.
+    #[inline]
     pub fn bounding_radius(&self) -> f64 {
-        match self.kind {
-            Kind::Sphere { radius } => radius,
-            Kind::Ellipsoid { semi } => semi.max_element(),
-            Kind::TruncatedEllipsoid { semi, .. } => semi.max_element(),
-            Kind::Capsule {
-                radius,
-                half_height,
-            } => radius + half_height,
-            Kind::Frustum {
-                bottom,
-                top,
-                half_height,
-            } => {
-                let r = bottom.max(top);
-                (r * r + half_height * half_height).sqrt()
-            }
-            Kind::Cuboid { half } => half.length(),
-            Kind::HalfSpace { .. } => f64::INFINITY,
-        }
+        self.radius
     }
 
     /// Length that tolerances are measured against [m]: the bounding radius where there is one.
     pub(crate) fn size(&self) -> f64 {
-        let radius = self.bounding_radius();
-        if radius.is_finite() { radius } else { 1.0 }
+        if self.radius.is_finite() {
+            self.radius
+        } else {
+            1.0
+        }
     }
 
     /// Whether a turn about the shape's own y axis leaves it as it is.
     pub fn is_axisymmetric(&self) -> bool {
         match self.kind {
-            Kind::Sphere { .. } | Kind::Capsule { .. } | Kind::Frustum { .. } => true,
+            Kind::Sphere { .. } | Kind::Capsule { .. } | Kind::Frustum(_) => true,
             Kind::Ellipsoid { semi } | Kind::TruncatedEllipsoid { semi, .. } => semi.x == semi.z,
-            Kind::Cuboid { .. } | Kind::HalfSpace { .. } => false,
+            Kind::Cuboid { .. } | Kind::HalfSpace { .. } | Kind::Cloud { .. } => false,
         }
+    }
+}
+
+/// Radius of the smallest ball about the origin that holds the shape [m].
+fn bounding_radius(kind: &Kind) -> f64 {
+    match kind {
+        Kind::Sphere { radius } => *radius,
+        Kind::Ellipsoid { semi } | Kind::TruncatedEllipsoid { semi, .. } => semi.max_element(),
+        Kind::Capsule { radius, segment } => radius + segment.half_height(),
+        Kind::Frustum(profile) => {
+            let (r, h) = (
+                profile.radius[0].max(profile.radius[1]),
+                profile.half_height(),
+            );
+            (r * r + h * h).sqrt()
+        }
+        Kind::Cuboid { half } => half.length(),
+        Kind::HalfSpace { .. } => f64::INFINITY,
+        Kind::Cloud { points, .. } => points.iter().map(|p| p.length()).fold(0.0, f64::max),
     }
 }

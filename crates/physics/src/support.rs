@@ -12,7 +12,7 @@ use crate::shape::{Kind, Shape};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Tip {
     pub point: DVec3,
-    pub piece: u8,
+    pub piece: u32,
 }
 
 /// One smooth part of a shape's boundary: centre and semi-axes in the shape's frame [m].
@@ -57,7 +57,7 @@ impl Piece {
 
 impl Shape {
     /// The piece with number `piece`.
-    pub(crate) fn piece(&self, piece: u8) -> Piece {
+    pub(crate) fn piece(&self, piece: u32) -> Piece {
         match self.kind {
             Kind::Sphere { radius } => Piece {
                 centre: DVec3::ZERO,
@@ -80,37 +80,19 @@ impl Shape {
                     }
                 }
             }
-            Kind::Capsule {
-                radius,
-                half_height,
-            } => {
-                let y = if piece == 0 {
-                    -half_height
-                } else {
-                    half_height
-                };
+            Kind::Capsule { radius, segment } => Piece {
+                centre: DVec3::new(0.0, segment.height[piece as usize], 0.0),
+                semi: DVec3::splat(radius),
+            },
+            Kind::Frustum(profile) => {
+                let r = profile.radius[piece as usize];
                 Piece {
-                    centre: DVec3::new(0.0, y, 0.0),
-                    semi: DVec3::splat(radius),
-                }
-            }
-            Kind::Frustum {
-                bottom,
-                top,
-                half_height,
-            } => {
-                let (y, r) = if piece == 0 {
-                    (-half_height, bottom)
-                } else {
-                    (half_height, top)
-                };
-                Piece {
-                    centre: DVec3::new(0.0, y, 0.0),
+                    centre: DVec3::new(0.0, profile.height[piece as usize], 0.0),
                     semi: DVec3::new(r, 0.0, r),
                 }
             }
             Kind::Cuboid { half } => {
-                let sign = |bit: u8, h: f64| if piece >> bit & 1 == 1 { h } else { -h };
+                let sign = |bit: u32, h: f64| if piece >> bit & 1 == 1 { h } else { -h };
                 Piece::point_only(DVec3::new(
                     sign(0, half.x),
                     sign(1, half.y),
@@ -118,14 +100,15 @@ impl Shape {
                 ))
             }
             Kind::HalfSpace { .. } => Piece::point_only(DVec3::ZERO),
+            Kind::Cloud { ref points, .. } => Piece::point_only(points[piece as usize]),
         }
     }
 
     /// Sense along y of the axis of a flat round piece, where all of its points are equally far.
-    pub(crate) fn pole(&self, piece: u8) -> Option<f64> {
-        match (self.kind, piece) {
-            (Kind::Frustum { bottom, .. }, 0) if bottom > 0.0 => Some(-1.0),
-            (Kind::Frustum { top, .. }, 1) if top > 0.0 => Some(1.0),
+    pub(crate) fn pole(&self, piece: u32) -> Option<f64> {
+        match (&self.kind, piece) {
+            (Kind::Frustum(profile), 0) if profile.radius[0] > 0.0 => Some(-1.0),
+            (Kind::Frustum(profile), 1) if profile.radius[1] > 0.0 => Some(1.0),
             (Kind::TruncatedEllipsoid { .. }, 1) => Some(-1.0),
             _ => None,
         }
@@ -135,7 +118,7 @@ impl Shape {
     ///
     /// The two pieces of a truncated ellipsoid are not rivals of which the farther counts: they join smoothly, and
     /// only the one in charge at n may be used there. All others keep their piece.
-    pub(crate) fn piece_in_charge(&self, piece: u8, n: DVec3) -> u8 {
+    pub(crate) fn piece_in_charge(&self, piece: u32, n: DVec3) -> u32 {
         match self.kind {
             Kind::TruncatedEllipsoid { .. } => self.tip(n).piece,
             _ => piece,
@@ -152,20 +135,17 @@ impl Shape {
             Kind::TruncatedEllipsoid { semi, cut, .. } => {
                 // Beyond the cut the farthest point left is on the rim. The two points meet there: no kink.
                 let stretched = semi * n;
-                u8::from(semi.y * stretched.y < cut * stretched.length())
+                u32::from(semi.y * stretched.y < cut * stretched.length())
             }
-            Kind::Capsule { .. } => u8::from(n.y > 0.0),
-            Kind::Frustum {
-                bottom,
-                top,
-                half_height,
-            } => {
+            Kind::Capsule { .. } => u32::from(n.y > 0.0),
+            Kind::Frustum(profile) => {
                 let across = (n.x * n.x + n.z * n.z).sqrt();
-                u8::from(2.0 * half_height * n.y + (top - bottom) * across > 0.0)
+                u32::from(profile.mantle.0 * n.y > profile.mantle.1 * across)
             }
             Kind::Cuboid { .. } => {
-                u8::from(n.x > 0.0) | u8::from(n.y > 0.0) << 1 | u8::from(n.z > 0.0) << 2
+                u32::from(n.x > 0.0) | u32::from(n.y > 0.0) << 1 | u32::from(n.z > 0.0) << 2
             }
+            Kind::Cloud { ref points, .. } => farthest(points, n),
         };
         Tip {
             point: self.piece(piece).point(n),
@@ -193,17 +173,13 @@ impl Shape {
                     along(n.z, half.z, target.z),
                 )
             }
-            Kind::Frustum {
-                bottom,
-                top,
-                half_height,
-            } => {
+            Kind::Frustum(profile) => {
                 let across = (n.x * n.x + n.z * n.z).sqrt();
                 if across <= slack {
-                    return self.disc_point(u8::from(n.y > 0.0), target);
+                    return self.disc_point(u32::from(n.y > 0.0), target);
                 }
-                let slope = 2.0 * half_height * n.y + (top - bottom) * across;
-                if slope.abs() <= slack * 2.0 * half_height {
+                let slope = profile.mantle.0 * n.y - profile.mantle.1 * across;
+                if slope.abs() <= slack {
                     let (p, q) = (self.piece(0).point(n), self.piece(1).point(n));
                     let along =
                         ((target - p).dot(q - p) / (q - p).length_squared()).clamp(0.0, 1.0);
@@ -219,24 +195,29 @@ impl Shape {
                     self.tip(n).point
                 }
             }
-            Kind::Capsule {
-                radius,
-                half_height,
-            } => {
+            Kind::Capsule { radius, segment } => {
                 if n.y.abs() <= slack {
-                    let y = target.y.clamp(-half_height, half_height);
+                    let y = target.y.clamp(segment.height[0], segment.height[1]);
                     n * radius + DVec3::Y * y
                 } else {
                     self.tip(n).point
                 }
             }
             Kind::HalfSpace { normal } => target - normal * normal.dot(target),
+            Kind::Cloud { ref points, .. } => {
+                let top = n.dot(points[farthest(points, n) as usize]);
+                let floor = top - slack * self.size();
+                nearest_in_hull(
+                    points.iter().copied().filter(|p| n.dot(*p) >= floor),
+                    target,
+                )
+            }
             Kind::Sphere { .. } | Kind::Ellipsoid { .. } => self.tip(n).point,
         }
     }
 
     /// Point of the flat end `piece` nearest to `target` (exact for round discs, radial for elliptic ones).
-    fn disc_point(&self, piece: u8, target: DVec3) -> DVec3 {
+    fn disc_point(&self, piece: u32, target: DVec3) -> DVec3 {
         let disc = self.piece(piece);
         let mut offset = target - disc.centre;
         offset.y = 0.0;
@@ -253,6 +234,52 @@ impl Shape {
             disc.centre + offset
         }
     }
+}
+
+/// The point nearest to `target` in the hull of a few points that lie in one plane, on one line or at one place.
+///
+/// It is one of the points, or lies on a line between two, or within a triangle of three.
+fn nearest_in_hull(points: impl Iterator<Item = DVec3> + Clone, target: DVec3) -> DVec3 {
+    let mut best = (f64::INFINITY, target);
+    let mut offer = |p: DVec3| {
+        let square = (p - target).length_squared();
+        if square < best.0 {
+            best = (square, p);
+        }
+    };
+    for (i, p) in points.clone().enumerate() {
+        offer(p);
+        for (j, q) in points.clone().enumerate().skip(i + 1) {
+            let edge = q - p;
+            let along = (target - p).dot(edge) / edge.length_squared();
+            if (0.0..=1.0).contains(&along) {
+                offer(p + edge * along);
+            }
+            for r in points.clone().skip(j + 1) {
+                let (other, to) = (r - p, target - p);
+                let normal = edge.cross(other);
+                let square = normal.length_squared();
+                let u = to.cross(other).dot(normal) / square;
+                let v = edge.cross(to).dot(normal) / square;
+                if u >= 0.0 && v >= 0.0 && u + v <= 1.0 {
+                    offer(p + edge * u + other * v);
+                }
+            }
+        }
+    }
+    best.1
+}
+
+/// Index of the point farthest along n; the first of several.
+fn farthest(points: &[DVec3], n: DVec3) -> u32 {
+    let (mut best, mut height) = (0, f64::NEG_INFINITY);
+    for (i, p) in points.iter().enumerate() {
+        let h = n.dot(*p);
+        if h > height {
+            (best, height) = (i, h);
+        }
+    }
+    best as u32
 }
 
 #[cfg(test)]

@@ -378,7 +378,7 @@ fn the_extreme_condition_stays_bounded_in_a_closed_room() {
         ];
         for (position, rotation) in sides {
             let mut def = block(m, DVec3::NEG_ONE, DVec3::ONE);
-            def.compound = Arc::new(Compound::single(room));
+            def.compound = Arc::new(Compound::single(room.clone()));
             def.pose = Pose::new(position, rotation);
             world.add(def);
         }

@@ -3,38 +3,34 @@
 use glam::DVec3;
 
 use super::{Placed, Separation};
-use crate::shape::Kind;
+use crate::shape::{Kind, Profile};
+
+/// A face is taken for the nearest feature up to this far outside it [m]: there the direction to a corner is rounding.
+const ON_FACE: f64 = 1e-10;
 
 /// The answer, if the pair has a closed form.
+#[inline]
 pub(super) fn separation(a: &Placed, b: &Placed) -> Option<Separation> {
     match (&a.shape.kind, &b.shape.kind) {
         (Kind::HalfSpace { .. }, Kind::HalfSpace { .. }) => Some(half_spaces(a, b)),
         (Kind::HalfSpace { normal }, _) => Some(plane(a, b, a.rotation * *normal)),
-        (_, Kind::HalfSpace { normal }) => Some(flip(plane(b, a, b.rotation * *normal))),
+        (_, Kind::HalfSpace { normal }) => Some(plane(b, a, b.rotation * *normal).swapped()),
         (Kind::Sphere { radius }, _) => {
             let (distance, normal) = outside(b, a.position)?;
-            Some(flip(from_sphere(b, a, distance, normal, *radius)))
+            Some(from_sphere(a, distance, normal, *radius).swapped())
         }
         (_, Kind::Sphere { radius }) => {
             let (distance, normal) = outside(a, b.position)?;
-            Some(from_sphere(a, b, distance, normal, *radius))
+            Some(from_sphere(b, distance, normal, *radius))
         }
         _ => None,
-    }
-}
-
-fn flip(s: Separation) -> Separation {
-    Separation {
-        normal: -s.normal,
-        point_a: s.point_b,
-        point_b: s.point_a,
-        ..s
     }
 }
 
 fn answer(gap: f64, normal: DVec3, point_a: DVec3, point_b: DVec3) -> Separation {
     Separation {
         gap,
+        upper: Some(gap),
         normal,
         point_a,
         point_b,
@@ -48,111 +44,123 @@ fn half_spaces(a: &Placed, b: &Placed) -> Separation {
 }
 
 /// Half-space `a` with outward normal `n` against `b`: one support point. On a flat, the middle of the flat.
+#[inline]
 fn plane(a: &Placed, b: &Placed, n: DVec3) -> Separation {
-    let point_b = b.face_point(-n, b.position, 1e-10);
+    let point_b = b.face_point(-n, b.position, super::cores::SQUARE);
     let gap = n.dot(point_b - a.position);
     answer(gap, n, point_b - n * gap, point_b)
 }
 
-/// Shape `a`, at signed `distance` along `normal` from the centre of the sphere `b`.
-fn from_sphere(a: &Placed, b: &Placed, distance: f64, normal: DVec3, radius: f64) -> Separation {
-    let _ = a;
-    let surface = b.position - normal * distance;
+/// A shape at signed `distance` from the centre of the `sphere`, with outward `normal` there.
+#[inline]
+fn from_sphere(sphere: &Placed, distance: f64, normal: DVec3, radius: f64) -> Separation {
+    let centre = sphere.position;
     answer(
         distance - radius,
         normal,
-        surface,
-        b.position - normal * radius,
+        centre - normal * distance,
+        centre - normal * radius,
     )
 }
 
 /// Signed distance of a point from a shape's surface and the outward normal there; `None` without a closed form.
+#[inline]
 pub(super) fn outside(shape: &Placed, point: DVec3) -> Option<(f64, DVec3)> {
-    let q = shape.local(point - shape.position);
-    let (distance, normal) = match shape.shape.kind {
-        Kind::Sphere { radius } => from_point(q, radius),
-        Kind::Capsule {
-            radius,
-            half_height,
-        } => {
-            let on_axis = DVec3::new(0.0, q.y.clamp(-half_height, half_height), 0.0);
-            from_point(q - on_axis, radius)
+    let q = point - shape.position;
+    Some(match &shape.shape.kind {
+        Kind::Sphere { radius } => from_point(q, *radius),
+        Kind::Capsule { radius, segment } => {
+            let axis = shape.rotation.y_axis;
+            let along = q.dot(axis).clamp(segment.height[0], segment.height[1]);
+            from_point(q - axis * along, *radius)
         }
-        Kind::Cuboid { half } => from_box(q, half),
-        Kind::Frustum {
-            bottom,
-            top,
-            half_height,
-        } => from_frustum(q, bottom, top, half_height),
+        Kind::Cuboid { half } => {
+            let (distance, normal) = from_box(shape.local(q), *half);
+            (distance, shape.rotation * normal)
+        }
+        Kind::Frustum(profile) => from_frustum(q, shape.rotation.y_axis, profile),
         _ => return None,
-    };
-    Some((distance, shape.rotation * normal))
+    })
 }
 
 /// Distance from a ball about the origin. At its very centre every direction is as good: +x, always.
+#[inline]
 fn from_point(q: DVec3, radius: f64) -> (f64, DVec3) {
     let length = q.length();
-    let normal = if length > 0.0 {
-        q.try_normalize().unwrap_or(DVec3::X)
+    let normal = if length > 1e-150 {
+        q * (1.0 / length)
     } else {
         DVec3::X
     };
     (length - radius, normal)
 }
 
+#[inline]
 fn from_box(q: DVec3, half: DVec3) -> (f64, DVec3) {
     let excess = q.abs() - half;
-    let outward = excess.max(DVec3::ZERO) * q.signum();
-    if let Some(normal) = outward.try_normalize() {
-        return (outward.length(), normal);
+    let nearest = excess.max_element();
+    if nearest > ON_FACE {
+        let outward = excess.max(DVec3::ZERO) * q.signum();
+        let length = outward.length();
+        return (length, outward * (1.0 / length));
     }
     // Inside: the nearest face; ties go to y, then x, so that a ball in the middle of a floor leaves upwards.
-    let best = excess.max_element();
-    let axis = if excess.y == best {
+    let axis = if excess.y == nearest {
         DVec3::Y
-    } else if excess.x == best {
+    } else if excess.x == nearest {
         DVec3::X
     } else {
         DVec3::Z
     };
-    (best, axis * axis.dot(q.signum()))
+    (nearest, axis * axis.dot(q.signum()))
 }
 
-/// Distance from a frustum in the plane of its axis and the point: the profile is a trapezium.
-fn from_frustum(q: DVec3, bottom: f64, top: f64, half_height: f64) -> (f64, DVec3) {
-    let across = DVec3::new(q.x, 0.0, q.z);
+/// Distance from a frustum about the origin, in the plane of its axis and the point: the outline is a trapezium.
+#[inline]
+fn from_frustum(q: DVec3, axis: DVec3, profile: &Profile) -> (f64, DVec3) {
+    let Profile {
+        radius,
+        height,
+        mantle,
+        slant,
+    } = *profile;
+    let along = q.dot(axis);
+    let across = q - axis * along;
     let rho = across.length();
-    let out = across.try_normalize().unwrap_or(DVec3::X);
-    let slant = ((top - bottom) * (top - bottom) + 4.0 * half_height * half_height).sqrt();
-    let side_normal = (2.0 * half_height / slant, (bottom - top) / slant); // (rho, y)
-    let side = (rho - bottom) * side_normal.0 + (q.y + half_height) * side_normal.1;
-    let (lid, floor) = (q.y - half_height, -half_height - q.y);
-    if side <= 0.0 && lid <= 0.0 && floor <= 0.0 {
-        return if lid >= side && lid >= floor {
-            (lid, DVec3::Y)
-        } else if floor >= side {
-            (floor, DVec3::NEG_Y)
-        } else {
-            (side, out * side_normal.0 + DVec3::Y * side_normal.1)
-        };
+    let out = if rho > 1e-14 * slant {
+        across * (1.0 / rho)
+    } else {
+        axis.any_orthonormal_vector()
+    };
+    let (lid, floor) = (along - height[1], height[0] - along);
+    let side = (rho - radius[0]) * mantle.0 + (along - height[0]) * mantle.1;
+    let (mut distance, mut normal) = if lid >= floor {
+        (lid, axis)
+    } else {
+        (floor, -axis)
+    };
+    if side > distance {
+        (distance, normal) = (side, out * mantle.0 + axis * mantle.1);
     }
-    // Outside: the nearest of the two discs and the slanted side.
-    let to_disc = |radius: f64, y: f64| ((rho - radius).max(0.0), q.y - y);
-    let along = (side_normal.0 * (q.y + half_height) - side_normal.1 * (rho - bottom)) / slant;
-    let along = along.clamp(0.0, 1.0);
-    let to_side = (
-        rho - bottom - (top - bottom) * along,
-        q.y + half_height - 2.0 * half_height * along,
-    );
-    let mut best = to_side;
-    for d in [to_disc(bottom, -half_height), to_disc(top, half_height)] {
-        if d.0 * d.0 + d.1 * d.1 < best.0 * best.0 + best.1 * best.1 {
-            best = d;
+    if distance <= ON_FACE {
+        return (distance, normal);
+    }
+    // Outside: the nearer of the disc on this side and the mantle.
+    let end = usize::from(lid > floor);
+    let disc = ((rho - radius[end]).max(0.0), along - height[end]);
+    let mut best = (disc.0 * disc.0 + disc.1 * disc.1, disc);
+    if side > 0.0 {
+        let t = (along - height[0]) * mantle.0 - (rho - radius[0]) * mantle.1;
+        let t = t.clamp(0.0, slant);
+        let wall = (
+            rho - radius[0] + t * mantle.1,
+            along - height[0] - t * mantle.0,
+        );
+        let square = wall.0 * wall.0 + wall.1 * wall.1;
+        if square < best.0 {
+            best = (square, wall);
         }
     }
-    let length = (best.0 * best.0 + best.1 * best.1).sqrt();
-    match (out * best.0 + DVec3::Y * best.1).try_normalize() {
-        Some(normal) => (length, normal),
-        None => (0.0, if lid >= floor { DVec3::Y } else { DVec3::NEG_Y }),
-    }
+    let length = best.0.sqrt();
+    (length, (out * best.1.0 + axis * best.1.1) * (1.0 / length))
 }

@@ -3,17 +3,25 @@
 //! With `P_a(n)` the farthest point of a along n and `P_b(n)` that of b along -n, let `D = P_b - P_a` and
 //! `s(n) = n.D`, the gap between the two tangent planes. One n with `s(n) > 0` proves the shapes apart, no closer
 //! than `s(n)`; the largest `s(n)` is the signed gap. The paper leaves the new estimate of n to an unpublished
-//! report; here it is a second-order step on the sphere (`ascent`), after closed forms where there are any
-//! (`closed`) and after the normals of flat faces, where the search has its kinks.
+//! report. Here there are closed forms for some pairs (`closed`) and a second-order search that follows the kinks of
+//! s for all others (`search`, from where `starts` says); vertex clouds have kinks without number and are searched
+//! with a bundle of their vertices (`bundle`).
 
-mod ascent;
+mod bounds;
+mod bundle;
 mod closed;
+mod cores;
 mod flats;
+mod pair;
+mod path;
+mod search;
+mod solve;
+mod starts;
 
 use glam::{DMat3, DVec3};
 
 use crate::pose::Pose;
-use crate::shape::{Kind, Shape};
+use crate::shape::Shape;
 
 /// Where two shapes touch, Eq. (1)-(2) of the paper.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,8 +59,11 @@ impl Default for Limits {
 /// The answer of a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Separation {
-    /// Signed gap along `normal` [m]: proven lower bound of the distance when positive, minus the depth when not.
+    /// Signed gap along `normal` [m]: a proven lower bound of the true one, which is the distance when apart and minus
+    /// the depth when not.
     pub gap: f64,
+    /// A proven upper bound of the signed gap [m]; `None` where there is none.
+    pub upper: Option<f64>,
     /// Unit normal from a to b on which the gap was found.
     pub normal: DVec3,
     /// The closest point of a [m].
@@ -61,11 +72,34 @@ pub struct Separation {
     pub point_b: DVec3,
     /// How many new normals were tried; zero for closed forms.
     pub iterations: u32,
-    /// Whether the iteration cap ended the search: the gap is still a bound, the normal only an estimate.
+    /// Whether the search ended before the closest points lined up, or before every promising start was tried: the
+    /// bounds hold, the normal is only an estimate.
     pub capped: bool,
 }
 
+/// A proof that two shapes are apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Apart {
+    /// Unit normal from a to b of two planes that part the shapes.
+    pub normal: DVec3,
+    /// How far the planes are apart [m]: no point of a is nearer to a point of b.
+    pub gap_at_least: f64,
+    /// How many new normals were tried.
+    pub iterations: u32,
+}
+
 impl Separation {
+    /// The answer for the two shapes in the other order.
+    #[inline]
+    fn swapped(self) -> Separation {
+        Separation {
+            normal: -self.normal,
+            point_a: self.point_b,
+            point_b: self.point_a,
+            ..self
+        }
+    }
+
     /// The contact of Eq. (1)-(2).
     pub fn contact(&self) -> Contact {
         Contact {
@@ -136,113 +170,75 @@ pub fn separation(
     )
 }
 
+/// Whether two shapes are apart: ends at the first normal that parts them. `None`: they overlap or touch, or the
+/// iterations ended before it was known.
+///
+/// Arguments as for [`separation`]; `limits.enough` is not used.
+pub fn apart(
+    a: (&Shape, &Pose),
+    b: (&Shape, &Pose),
+    start: Option<DVec3>,
+    limits: Limits,
+) -> Option<Apart> {
+    let found = separation(
+        a,
+        b,
+        start,
+        Limits {
+            enough: 0.0,
+            ..limits
+        },
+    );
+    (found.gap > 0.0).then_some(Apart {
+        normal: found.normal,
+        gap_at_least: found.gap,
+        iterations: found.iterations,
+    })
+}
+
 /// The gap along a fixed normal: a lower bound of the distance, at the price of two support points.
 pub(crate) fn gap_along(a: &Placed, b: &Placed, n: DVec3) -> f64 {
     n.dot(b.support(-n) - a.support(n))
 }
 
+#[inline]
 pub(crate) fn separation_placed(
     a: &Placed,
     b: &Placed,
     start: Option<DVec3>,
     limits: Limits,
 ) -> Separation {
-    if let Some(answer) = closed::separation(a, b) {
+    if let Some(answer) = far(a, b, limits.enough) {
         return answer;
     }
-    let first = start.or_else(|| centres(a, b)).unwrap_or(DVec3::Y);
-    let early = gap_along(a, b, first);
-    if early > limits.enough {
-        return along(a, b, first, early);
-    }
-    if let Some(answer) = flats::square_on(a, b, first, early) {
-        return answer;
-    }
-    let mut best = ascent::ascend(a, b, first, limits);
-    if best.gap > limits.enough || (best.gap > 0.0 && !best.capped) {
-        return best;
-    }
-    // Overlapping shapes have several local maxima; the shallowest way out decides. Also a capped search may have
-    // stalled on a flat.
-    for n in flats::normals(a).chain(flats::normals(b).map(|n| -n)) {
-        let s = gap_along(a, b, n);
-        if s > best.gap - 1e-3 * best.gap.abs() - 1e-12
-            && let Ok(answer) = flats::line_up(a, b, n, s)
-            && answer.gap >= best.gap - 1e-15
-        {
-            best = Separation {
-                iterations: best.iterations,
-                ..answer
-            };
-        }
-    }
-    if best.gap <= 0.0 && start.is_none() {
-        best = from_other_starts(a, b, best, limits);
-    }
-    best
-}
-
-/// Searches an overlap again from the shapes' axes, the most promising first, with what is left of the budget.
-fn from_other_starts(a: &Placed, b: &Placed, first: Separation, limits: Limits) -> Separation {
-    let (ra, rb) = (&a.rotation, &b.rotation);
-    let axes = [ra.y_axis, rb.y_axis, ra.x_axis, ra.z_axis];
-    let mut starts = [(0.0, DVec3::ZERO); 8];
-    for (start, n) in starts
-        .iter_mut()
-        .zip(axes.into_iter().flat_map(|n| [n, -n]))
-    {
-        *start = (gap_along(a, b, n), n);
-    }
-    starts.sort_by(|x, y| y.0.total_cmp(&x.0));
-    let mut best = first;
-    let mut used = first.iterations;
-    for (_, n) in starts {
-        let iteration_cap = limits.iteration_cap.saturating_sub(used);
-        if iteration_cap == 0 {
-            break;
-        }
-        let other = ascent::ascend(
-            a,
-            b,
-            n,
-            Limits {
-                iteration_cap,
-                ..limits
-            },
-        );
-        used += other.iterations;
-        if other.gap > best.gap + 1e-12 {
-            best = other;
-        }
-    }
-    Separation {
-        iterations: used,
-        ..best
+    match closed::separation(a, b) {
+        Some(answer) => answer,
+        None => solve::search(a, b, start, limits),
     }
 }
 
-/// Where the search starts without a known normal: the line of centres.
-///
-/// The middle of a long box says little about which of its faces is near; there the direction from the box to the
-/// other's centre takes its place.
-fn centres(a: &Placed, b: &Placed) -> Option<DVec3> {
-    match (&a.shape.kind, &b.shape.kind) {
-        (Kind::Cuboid { .. }, _) => closed::outside(a, b.position).map(|(_, n)| n),
-        (_, Kind::Cuboid { .. }) => closed::outside(b, a.position).map(|(_, n)| -n),
-        _ => (b.position - a.position).try_normalize(),
+/// The answer for shapes whose bounding balls are farther apart than is asked for. The points are the balls'.
+#[inline]
+fn far(a: &Placed, b: &Placed, enough: f64) -> Option<Separation> {
+    let (radius_a, radius_b) = (a.shape.bounding_radius(), b.shape.bounding_radius());
+    let between = b.position - a.position;
+    let reach = radius_a + radius_b + enough;
+    let square = between.length_squared();
+    // Not so for infinite reach, of half-spaces or an exact gap.
+    if !(square > reach * reach && reach > 0.0) {
+        return None;
     }
-}
-
-/// The answer along one normal without any search.
-fn along(a: &Placed, b: &Placed, n: DVec3, gap: f64) -> Separation {
-    Separation {
-        gap,
-        normal: n,
-        point_a: a.support(n),
-        point_b: b.support(-n),
+    let distance = square.sqrt();
+    let normal = between * (1.0 / distance);
+    Some(Separation {
+        gap: distance - radius_a - radius_b,
+        upper: None,
+        normal,
+        point_a: a.position + normal * radius_a,
+        point_b: b.position - normal * radius_b,
         iterations: 0,
         capped: false,
-    }
+    })
 }
 
 /// Signed distance of a point from a shape, where there is a closed form for it.

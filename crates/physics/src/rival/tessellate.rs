@@ -42,7 +42,7 @@ pub fn polygon_count(shape: &Shape, sides: u32) -> Option<usize> {
         Kind::Sphere { .. } | Kind::Ellipsoid { .. } => n * (n / 2).max(2),
         Kind::TruncatedEllipsoid { .. } => n * (n / 2).max(2) + 1,
         Kind::Capsule { .. } => n * (2 * (n / 4).max(1) + 1),
-        Kind::Frustum { bottom, top, .. } => n + usize::from(bottom > 0.0) + usize::from(top > 0.0),
+        Kind::Frustum(profile) => n + profile.radius.iter().filter(|r| **r > 0.0).count(),
         Kind::Cuboid { .. } => 6,
         _ => return None,
     };
@@ -68,20 +68,12 @@ impl Polyhedron {
                 };
                 revolve(&rings, n)
             }
-            Kind::Capsule {
-                radius,
-                half_height,
-            } => revolve(&capsule(radius, half_height, n), n),
-            Kind::Frustum {
-                bottom,
-                top,
-                half_height,
-            } => {
-                let ends = [
-                    Ring::round(-half_height, bottom),
-                    Ring::round(half_height, top),
-                ];
-                revolve(&ends, n)
+            Kind::Capsule { radius, segment } => {
+                revolve(&capsule(radius, segment.half_height(), n), n)
+            }
+            Kind::Frustum(profile) => {
+                let end = |i: usize| Ring::round(profile.height[i], profile.radius[i]);
+                revolve(&[end(0), end(1)], n)
             }
             Kind::Cuboid { half } => cuboid(half),
             _ => return None,

@@ -240,8 +240,8 @@ fn base(a: &Placed, b: &Placed, normal: DVec3) -> Option<Base> {
     let face = is_flat(flat)?;
     let axis = round.rotation.y_axis;
     let below = axis.dot(up) > 0.0;
-    let disc = round.shape.piece(u8::from(
-        !below && matches!(round.shape.kind, Kind::Frustum { .. }),
+    let disc = round.shape.piece(u32::from(
+        !below && matches!(round.shape.kind, Kind::Frustum(_)),
     ));
     let disc = match round.shape.kind {
         Kind::TruncatedEllipsoid { .. } if below => round.shape.piece(1),
@@ -281,7 +281,7 @@ fn is_on_edge(a: &Placed, b: &Placed, normal: DVec3) -> bool {
 fn has_disc(shape: &Placed) -> bool {
     matches!(
         shape.shape.kind,
-        Kind::Frustum { .. } | Kind::TruncatedEllipsoid { .. }
+        Kind::Frustum(_) | Kind::TruncatedEllipsoid { .. }
     )
 }
 

@@ -10,6 +10,7 @@
 use glam::{DVec2, DVec3};
 
 use super::{Limits, Placed, Separation, flats, gap_along};
+use crate::shape::Kind;
 
 /// Longest step on the tangent plane [rad, about].
 const LONGEST: f64 = 1.0;
@@ -21,7 +22,7 @@ const KEPT: usize = 4;
 /// Second-order model of one pair of pieces at the current normal.
 #[derive(Clone, Copy)]
 struct Model {
-    pieces: (u8, u8),
+    pieces: (u32, u32),
     points: (DVec3, DVec3),
     s: f64,
     gradient: DVec2,
@@ -51,14 +52,14 @@ impl Tangent {
 }
 
 /// The natural pair of pieces at a normal, with its points.
-fn natural(a: &Placed, b: &Placed, n: DVec3) -> ((u8, u8), f64) {
+fn natural(a: &Placed, b: &Placed, n: DVec3) -> ((u32, u32), f64) {
     let (tip_a, tip_b) = (a.shape.tip(a.local(n)), b.shape.tip(b.local(-n)));
     let point_a = a.position + a.rotation * tip_a.point;
     let point_b = b.position + b.rotation * tip_b.point;
     ((tip_a.piece, tip_b.piece), n.dot(point_b - point_a))
 }
 
-fn model(a: &Placed, b: &Placed, pieces: (u8, u8), tangent: &Tangent, weight: f64) -> Model {
+fn model(a: &Placed, b: &Placed, pieces: (u32, u32), tangent: &Tangent, weight: f64) -> Model {
     let Tangent { n, u, w } = *tangent;
     let (local_a, local_b) = (a.local(n), b.local(-n));
     let pieces = (
@@ -95,8 +96,76 @@ fn model(a: &Placed, b: &Placed, pieces: (u8, u8), tangent: &Tangent, weight: f6
     }
 }
 
+/// Signed gap of two shapes of which one is a cloud.
+pub(super) fn separation(
+    a: &Placed,
+    b: &Placed,
+    start: Option<DVec3>,
+    limits: Limits,
+) -> Separation {
+    let first = start.or_else(|| (middle(b) - middle(a)).try_normalize());
+    let mut best = ascend(a, b, first.unwrap_or(DVec3::Y), limits);
+    if best.gap > limits.enough {
+        return best;
+    }
+    if best.gap <= 0.0 && start.is_none() {
+        best = from_other_starts(a, b, best, limits);
+    }
+    best.upper = (best.gap > 0.0).then(|| (best.point_b - best.point_a).length().max(best.gap));
+    best
+}
+
+/// A point well inside the shape.
+fn middle(shape: &Placed) -> DVec3 {
+    match &shape.shape.kind {
+        Kind::Cloud { centre, .. } => shape.position + shape.rotation * *centre,
+        _ => shape.position,
+    }
+}
+
+/// Searches an overlap again from the shapes' axes and flats, the most promising first, with what is left of the
+/// budget.
+fn from_other_starts(a: &Placed, b: &Placed, first: Separation, limits: Limits) -> Separation {
+    let (ra, rb) = (&a.rotation, &b.rotation);
+    let axes = [
+        ra.x_axis, ra.y_axis, ra.z_axis, rb.x_axis, rb.y_axis, rb.z_axis,
+    ];
+    let mut starts = [(0.0, DVec3::ZERO); 12];
+    for (start, n) in starts
+        .iter_mut()
+        .zip(axes.into_iter().flat_map(|n| [n, -n]))
+    {
+        *start = (gap_along(a, b, n), n);
+    }
+    starts.sort_by(|x, y| y.0.total_cmp(&x.0));
+    let mut best = first;
+    let mut used = first.iterations;
+    for (_, n) in starts {
+        let iteration_cap = limits.iteration_cap.saturating_sub(used);
+        if iteration_cap == 0 {
+            best.capped = true;
+            break;
+        }
+        let other = ascend(
+            a,
+            b,
+            n,
+            Limits {
+                iteration_cap,
+                ..limits
+            },
+        );
+        used += other.iterations;
+        if other.gap > best.gap {
+            best = other;
+        }
+    }
+    best.iterations = used;
+    best
+}
+
 /// Climbs from `start` to the nearest maximum of s.
-pub(super) fn ascend(a: &Placed, b: &Placed, start: DVec3, limits: Limits) -> Separation {
+fn ascend(a: &Placed, b: &Placed, start: DVec3, limits: Limits) -> Separation {
     let mut climb = Climb::new(a, b, start, limits);
     loop {
         if let Some(answer) = climb.step() {
@@ -154,7 +223,9 @@ impl<'a> Climb<'a> {
             return self.answer(false);
         }
         let (mut t, gain) = self.kept.solve(self.s, self.scale);
-        let finished = gain <= self.limits.tolerance;
+        // Apart, the normal is to be right and not only the gap: between corners that nearly touch s is almost flat.
+        let straight = self.s <= 0.0 || t.length() < 1e-7;
+        let finished = gain <= self.limits.tolerance && straight;
         if self.iterations >= self.limits.iteration_cap {
             return self.answer(!finished);
         }
@@ -265,7 +336,7 @@ impl Bundle {
     }
 
     /// Whether one of the models is that of `pieces` at the normal `n`.
-    fn follows(&self, a: &Placed, b: &Placed, n: DVec3, pieces: (u8, u8)) -> bool {
+    fn follows(&self, a: &Placed, b: &Placed, n: DVec3, pieces: (u32, u32)) -> bool {
         let (local_a, local_b) = (a.local(n), b.local(-n));
         self.models[..self.count].iter().any(|m| {
             a.shape.piece_in_charge(m.pieces.0, local_a) == pieces.0
@@ -309,7 +380,7 @@ impl Bundle {
 
     /// Maximises the smallest model: the step, and the gain over `s` that it promises.
     fn solve(&mut self, s: f64, scale: f64) -> (DVec2, f64) {
-        let curvature = self.curvature(scale);
+        let curvature = self.curvature(s, scale);
         let count = self.count;
         let mut best: Option<(f64, DVec2, [f64; KEPT])> = None;
         // The dual function is convex: the subset whose solution violates no other model least is the optimum.
@@ -339,7 +410,7 @@ impl Bundle {
     }
 
     /// Weighted curvature, made positive definite so that the model has a maximum.
-    fn curvature(&self, scale: f64) -> [f64; 3] {
+    fn curvature(&self, s: f64, scale: f64) -> [f64; 3] {
         let mut sum = [0.0; 3];
         let mut total = 0.0;
         for m in &self.models[..self.count] {
@@ -355,7 +426,8 @@ impl Bundle {
         }
         let mean = 0.5 * (sum[0] + sum[2]);
         let spread = (0.25 * (sum[0] - sum[2]) * (sum[0] - sum[2]) + sum[1] * sum[1]).sqrt();
-        let floor = 1e-3 * scale;
+        // Where s > 0 it is concave by itself, if only just.
+        let floor = if s > 0.0 { 1e-12 * scale } else { 1e-3 * scale };
         let shift = (floor - (mean - spread)).max(0.0);
         [sum[0] + shift, sum[1], sum[2] + shift]
     }
@@ -424,6 +496,7 @@ impl Bundle {
         }
         Separation {
             gap: s,
+            upper: None,
             normal: n,
             point_a: point_a / total,
             point_b: point_b / total,

@@ -1,0 +1,90 @@
+//! Ellipsoids: one smooth surface, no kinks.
+
+use glam::{DMat3, DVec3};
+
+use super::{Circle, Core, Disc, Symmetric, Tip};
+
+/// `{p : p^T M^-1 p <= 1}`: support point `M n / h` with `h = sqrt(n.M n)`, derivative `(M - P P^T) / h`.
+pub(in crate::query) struct EllipsoidCore {
+    square: Symmetric,
+    size: f64,
+}
+
+impl EllipsoidCore {
+    pub fn new(rotation: &DMat3, semi: DVec3) -> EllipsoidCore {
+        EllipsoidCore {
+            square: Symmetric::turned(rotation, semi * semi),
+            size: semi.max_element(),
+        }
+    }
+}
+
+/// Curvature of a quadric with matrix `square` at the support point `tip` within u and w.
+#[inline(always)]
+pub(super) fn quadric(square: &Symmetric, q: DVec3, inverse: f64, u: DVec3, w: DVec3) -> [f64; 3] {
+    let (mu, mw) = (square.times(u), square.times(w));
+    let (qu, qw) = (q.dot(u), q.dot(w));
+    [
+        (mu.dot(u) - qu * qu) * inverse,
+        (mu.dot(w) - qu * qw) * inverse,
+        (mw.dot(w) - qw * qw) * inverse,
+    ]
+}
+
+impl Core for EllipsoidCore {
+    const CIRCLES: usize = 0;
+    const DISCS: bool = false;
+    const CURVED: bool = true;
+    const SMALL_CIRCLES: bool = false;
+
+    #[inline(always)]
+    fn tip(&self, n: DVec3) -> Tip {
+        let w = self.square.times(n);
+        let inverse = 1.0 / n.dot(w).sqrt();
+        Tip {
+            point: w * inverse,
+            sides: 0,
+            inverse,
+        }
+    }
+
+    #[inline(always)]
+    fn tip_on(&self, n: DVec3, _: u8) -> Tip {
+        self.tip(n)
+    }
+
+    #[inline(always)]
+    fn curvature(&self, _: DVec3, tip: &Tip, u: DVec3, w: DVec3) -> [f64; 3] {
+        quadric(&self.square, tip.point, tip.inverse, u, w)
+    }
+
+    #[inline(always)]
+    fn curvature_along(&self, _: DVec3, tip: &Tip, e: DVec3) -> f64 {
+        let q = tip.point.dot(e);
+        (self.square.times(e).dot(e) - q * q) * tip.inverse
+    }
+
+    fn circle(&self, _: usize) -> Circle {
+        Circle::NONE
+    }
+
+    fn disc(&self, _: u8) -> Disc {
+        Disc {
+            axis: DVec3::ZERO,
+            radius: 0.0,
+            centre: DVec3::ZERO,
+        }
+    }
+
+    fn face_point(&self, n: DVec3, _: DVec3) -> DVec3 {
+        self.tip(n).point
+    }
+
+    fn extents(&self) -> Symmetric {
+        self.square
+    }
+
+    fn size(&self) -> f64 {
+        self.size
+    }
+}

@@ -1,0 +1,138 @@
+//! Two cores in one frame: support points, the gap along a normal, and where flat sides line up.
+
+use glam::DVec3;
+
+use super::cores::{Circle, Core, Tip};
+
+/// Circles are numbered through both cores: a's from 0, b's from here on.
+pub(super) const OF_B: usize = 3;
+
+/// Core a, and core b mirrored at its centre, whose centre lies at `offset` from a's.
+pub(super) struct Pair<A, B> {
+    pub a: A,
+    pub b: B,
+    pub offset: DVec3,
+    /// Length that tolerances are measured against [m].
+    pub size: f64,
+    pub circles: [Circle; 2 * OF_B],
+}
+
+/// The support points of both cores along one normal.
+#[derive(Clone, Copy)]
+pub(super) struct Tips {
+    pub a: Tip,
+    pub b: Tip,
+}
+
+impl Tips {
+    /// On which side of each circle the support points lie.
+    #[inline(always)]
+    pub fn sides(&self) -> u8 {
+        self.a.sides | self.b.sides << OF_B
+    }
+}
+
+impl<A: Core, B: Core> Pair<A, B> {
+    #[inline(always)]
+    pub fn new(a: A, b: B, offset: DVec3) -> Pair<A, B> {
+        let mut circles = [Circle::NONE; 2 * OF_B];
+        for (i, circle) in circles[..A::CIRCLES].iter_mut().enumerate() {
+            *circle = a.circle(i);
+        }
+        for (i, circle) in circles[OF_B..OF_B + B::CIRCLES].iter_mut().enumerate() {
+            *circle = b.circle(i);
+        }
+        let size = a.size() + b.size();
+        Pair {
+            a,
+            b,
+            offset,
+            size,
+            circles,
+        }
+    }
+
+    #[inline(always)]
+    pub fn tips(&self, n: DVec3) -> Tips {
+        Tips {
+            a: self.a.tip(n),
+            b: self.b.tip(n),
+        }
+    }
+
+    #[inline(always)]
+    pub fn tips_on(&self, n: DVec3, sides: u8) -> Tips {
+        Tips {
+            a: self.a.tip_on(n, sides & 7),
+            b: self.b.tip_on(n, sides >> OF_B),
+        }
+    }
+
+    /// The support points along n, with those circles that the search is held to counted as below n.
+    #[inline(always)]
+    pub fn tips_held(&self, n: DVec3, held: u8) -> Tips {
+        let tips = self.tips(n);
+        if tips.sides() & held == 0 {
+            tips
+        } else {
+            self.tips_on(n, tips.sides() & !held)
+        }
+    }
+
+    /// `D`, from a's support point to b's.
+    #[inline(always)]
+    pub fn between(&self, tips: &Tips) -> DVec3 {
+        self.offset - tips.a.point - tips.b.point
+    }
+
+    /// `s(n)`, the gap between the tangent planes.
+    #[inline(always)]
+    pub fn gap(&self, n: DVec3) -> f64 {
+        n.dot(self.between(&self.tips(n)))
+    }
+
+    /// Whether there is a circle with this number.
+    #[inline(always)]
+    pub fn has_circle(index: usize) -> bool {
+        if index < OF_B {
+            index < A::CIRCLES
+        } else {
+            index - OF_B < B::CIRCLES
+        }
+    }
+
+    /// Points of both cores, farthest along n, that come closest to lying on one line along n.
+    ///
+    /// Where the cores are flat under n these are two convex sets; projecting in turn on either one closes in on a
+    /// pair of nearest points.
+    #[cold]
+    #[inline(never)]
+    pub fn line_up(&self, n: DVec3) -> (DVec3, DVec3) {
+        let mut point_a = self.a.face_point(n, self.offset);
+        let mut point_b = self.b.face_point(n, self.offset - point_a);
+        let mut last = f64::INFINITY;
+        for _ in 0..12 {
+            point_a = self.a.face_point(n, self.offset - point_b);
+            point_b = self.b.face_point(n, self.offset - point_a);
+            let d = self.offset - point_a - point_b;
+            let aside = (d - n * n.dot(d)).length();
+            if aside > 0.999 * last || aside < 1e-15 * self.size {
+                break;
+            }
+            last = aside;
+        }
+        (point_a, point_b)
+    }
+}
+
+/// Two unit vectors that complete n to an orthonormal basis, without a branch (Duff et al. 2017).
+#[inline(always)]
+pub(super) fn basis(n: DVec3) -> (DVec3, DVec3) {
+    let sign = 1.0_f64.copysign(n.z);
+    let k = -1.0 / (sign + n.z);
+    let m = n.x * n.y * k;
+    (
+        DVec3::new(1.0 + sign * n.x * n.x * k, sign * m, -sign * n.x),
+        DVec3::new(m, sign + n.y * n.y * k, -n.y),
+    )
+}

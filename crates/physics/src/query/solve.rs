@@ -1,0 +1,135 @@
+//! Brings a pair of placed shapes before the search that suits it, and its answer into the world again.
+
+use glam::{DMat3, DVec3};
+
+use super::cores::{Core, CuboidCore, EllipsoidCore, PointCore, RevolutionCore, TruncatedCore};
+use super::pair::Pair;
+use super::search::Goal;
+use super::starts::{self, Found};
+use super::{Limits, Placed, Separation, bounds, bundle};
+use crate::shape::Kind;
+
+/// Order of the families: a pair is searched with the lower one first, so that each has one search.
+fn family(kind: &Kind) -> u8 {
+    match kind {
+        Kind::Sphere { .. } => 0,
+        Kind::Capsule { .. } | Kind::Frustum(_) => 1,
+        Kind::Ellipsoid { .. } => 2,
+        Kind::TruncatedEllipsoid { .. } => 3,
+        Kind::Cuboid { .. } => 4,
+        Kind::Cloud { .. } | Kind::HalfSpace { .. } => 5,
+    }
+}
+
+/// What a core leaves out: the radius about it [m].
+fn rounding(kind: &Kind) -> f64 {
+    match kind {
+        Kind::Sphere { radius } | Kind::Capsule { radius, .. } => *radius,
+        _ => 0.0,
+    }
+}
+
+/// Searches the signed gap of a pair without a closed form.
+#[inline(never)]
+pub(super) fn search(a: &Placed, b: &Placed, start: Option<DVec3>, limits: Limits) -> Separation {
+    let (first, second) = (family(&a.shape.kind), family(&b.shape.kind));
+    if first > second {
+        return search(b, a, start.map(|n| -n), limits).swapped();
+    }
+    if second == 5 {
+        return bundle::separation(a, b, start, limits);
+    }
+    let task = Task {
+        a,
+        b,
+        start,
+        limits,
+    };
+    match &a.shape.kind {
+        Kind::Sphere { .. } => task.with_b(PointCore),
+        Kind::Capsule {
+            segment: profile, ..
+        }
+        | Kind::Frustum(profile) => {
+            let axis = a.rotation.y_axis;
+            task.with_b(RevolutionCore { axis, profile })
+        }
+        Kind::Ellipsoid { semi } => task.with_b(EllipsoidCore::new(&a.rotation, *semi)),
+        Kind::TruncatedEllipsoid { semi, cut, rim } => {
+            task.with_b(TruncatedCore::new(&a.rotation, *semi, *cut, *rim))
+        }
+        Kind::Cuboid { half } => task.with_b(CuboidCore::new(&a.rotation, *half)),
+        Kind::HalfSpace { .. } | Kind::Cloud { .. } => bundle::separation(a, b, start, limits),
+    }
+}
+
+struct Task<'t> {
+    a: &'t Placed<'t>,
+    b: &'t Placed<'t>,
+    start: Option<DVec3>,
+    limits: Limits,
+}
+
+impl Task<'_> {
+    fn with_b<A: Core>(&self, a: A) -> Separation {
+        let r = &self.b.rotation;
+        let mirrored = DMat3::from_cols(-r.x_axis, -r.y_axis, -r.z_axis);
+        match &self.b.shape.kind {
+            Kind::Sphere { .. } => self.solve(a, PointCore),
+            Kind::Capsule {
+                segment: profile, ..
+            }
+            | Kind::Frustum(profile) => {
+                let axis = mirrored.y_axis;
+                self.solve(a, RevolutionCore { axis, profile })
+            }
+            Kind::Ellipsoid { semi } => self.solve(a, EllipsoidCore::new(&mirrored, *semi)),
+            Kind::TruncatedEllipsoid { semi, cut, rim } => {
+                self.solve(a, TruncatedCore::new(&mirrored, *semi, *cut, *rim))
+            }
+            Kind::Cuboid { half } => self.solve(a, CuboidCore::new(&mirrored, *half)),
+            Kind::HalfSpace { .. } | Kind::Cloud { .. } => {
+                bundle::separation(self.a, self.b, self.start, self.limits)
+            }
+        }
+    }
+
+    fn solve<A: Core, B: Core>(&self, a: A, b: B) -> Separation {
+        let pair = Pair::new(a, b, self.b.position - self.a.position);
+        let radii = (rounding(&self.a.shape.kind), rounding(&self.b.shape.kind));
+        let goal = Goal {
+            cap: self.limits.iteration_cap,
+            tolerance: self.limits.tolerance.max(1e-13 * pair.size),
+            enough: self.limits.enough + radii.0 + radii.1,
+        };
+        let found = match self.start {
+            Some(start) => starts::from_known(&pair, start, goal),
+            None => starts::from_nothing(&pair, goal),
+        };
+        self.answer(&pair, &found, radii)
+    }
+
+    #[inline(always)]
+    fn answer<A, B>(&self, pair: &Pair<A, B>, found: &Found, radii: (f64, f64)) -> Separation {
+        let summit = &found.summit;
+        let (n, (core_a, core_b)) = (summit.n, summit.points);
+        let point_a = self.a.position + core_a + n * radii.0;
+        let point_b = self.b.position - core_b - n * radii.1;
+        let gap = summit.s - radii.0 - radii.1;
+        let upper = if summit.s > 0.0 {
+            let distance = (pair.offset - core_a - core_b).length();
+            Some((distance - radii.0 - radii.1).max(gap))
+        } else {
+            bounds::overlap(self.a, self.b, (point_a + point_b) * 0.5).map(|up| up.max(gap))
+        };
+        Separation {
+            gap,
+            upper,
+            normal: n,
+            point_a,
+            point_b,
+            iterations: summit.iterations,
+            capped: found.capped,
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! Where searches begin, and how many: one where s is concave, several where overlapping cores have several maxima.
+
+use glam::DVec3;
+
+use super::cores::Core;
+use super::pair::{OF_B, Pair, basis};
+use super::path::crossings;
+use super::search::{Goal, Search, State, Summit};
+
+/// Room for all candidates of two boxes and of two frusta.
+const ROOM: usize = 40;
+/// Most candidates that are searched from.
+const POLISHED: usize = 6;
+/// Candidates farther below the best summit than this are not searched from, in units of the pair's size.
+const MARGIN: f64 = 0.15;
+
+/// The highest summit found.
+pub(super) struct Found {
+    pub summit: Summit,
+    /// Whether the iterations ended before the search did.
+    pub capped: bool,
+}
+
+/// Searches from a known normal only.
+#[inline]
+pub(super) fn from_known<A: Core, B: Core>(pair: &Pair<A, B>, start: DVec3, goal: Goal) -> Found {
+    let summit = Search::run(pair, start, State::Free, goal);
+    let capped = !summit.converged;
+    Found { summit, capped }
+}
+
+/// Searches without a known normal: from the line of centres, weighed with the cores' extents, and if they overlap
+/// from the normals at which the other maxima of s lie.
+#[inline]
+pub(super) fn from_nothing<A: Core, B: Core>(pair: &Pair<A, B>, goal: Goal) -> Found {
+    let first = Search::run(pair, first_normal(pair), State::Free, goal);
+    if first.s > 0.0 && first.converged {
+        // s is concave where it is positive: there is no other maximum.
+        return Found {
+            summit: first,
+            capped: false,
+        };
+    }
+    let mut candidates = Candidates::new();
+    candidates.collect(pair);
+    if !A::CURVED && !B::CURVED {
+        return candidates.best_corner(pair, first);
+    }
+    candidates.climb(pair, first, goal)
+}
+
+/// `(M_a + M_b)^-1 d` for the matrices of the cores' extents: exact for two ellipsoids of one shape.
+#[inline(always)]
+fn first_normal<A: Core, B: Core>(pair: &Pair<A, B>) -> DVec3 {
+    let sum = pair.a.extents().plus(&pair.b.extents());
+    let n = sum.solve_direction(0.02 * sum.trace(), pair.offset);
+    let length = n.length_squared();
+    if length > 1e-300 && length.is_finite() {
+        n * (1.0 / length.sqrt())
+    } else {
+        DVec3::Y
+    }
+}
+
+/// Normals to search from, each in its own state.
+struct Candidates {
+    list: [(f64, DVec3, State); ROOM],
+    count: usize,
+}
+
+impl Candidates {
+    fn new() -> Candidates {
+        Candidates {
+            list: [(f64::NEG_INFINITY, DVec3::Y, State::Free); ROOM],
+            count: 0,
+        }
+    }
+
+    fn put<A: Core, B: Core>(&mut self, pair: &Pair<A, B>, n: DVec3, state: State) {
+        if self.count < ROOM {
+            self.list[self.count] = (pair.gap(n), n, state);
+            self.count += 1;
+        }
+    }
+
+    #[inline(never)]
+    fn collect<A: Core, B: Core>(&mut self, pair: &Pair<A, B>) {
+        let (ends_a, ends_b) = (ends(&pair.a), ends(&pair.b));
+        for (ends, of_b) in [(&ends_a, false), (&ends_b, true)] {
+            for n in ends.iter().flatten() {
+                self.put(pair, *n, State::Disc(of_b));
+            }
+        }
+        for i in (0..2 * OF_B).filter(|i| Pair::<A, B>::has_circle(*i)) {
+            let circle = &pair.circles[i];
+            if A::CURVED || B::CURVED {
+                let side = || circle.axis * circle.height + basis(circle.axis).0 * circle.radius;
+                let n = circle.nearest(pair.offset).unwrap_or_else(side);
+                self.put(pair, n, State::Circle(i));
+                for n in if i < OF_B { &ends_b } else { &ends_a }.iter().flatten() {
+                    if let Some(n) = circle.nearest(*n) {
+                        self.put(pair, n, State::Circle(i));
+                    }
+                }
+            }
+            for j in (i + 1..2 * OF_B).filter(|j| Pair::<A, B>::has_circle(*j)) {
+                self.put_crossings(pair, i, j);
+            }
+        }
+        if let Some(n) = pair.offset.try_normalize() {
+            self.put(pair, n, State::Free);
+        }
+        if let (Some(a), Some(b)) = (ends_a[1].or(ends_a[0]), ends_b[1].or(ends_b[0])) {
+            let between = a + b * 1.0_f64.copysign(a.dot(b));
+            let n = between * (1.0 / between.length());
+            self.put(pair, n, State::Free);
+            self.put(pair, -n, State::Free);
+        }
+    }
+
+    fn put_crossings<A: Core, B: Core>(&mut self, pair: &Pair<A, B>, i: usize, j: usize) {
+        let (one, two) = (&pair.circles[i], &pair.circles[j]);
+        let Some((p, q)) = crossings(one, two) else {
+            return;
+        };
+        if one.height == 0.0 && two.height == 0.0 {
+            // Opposite normals: s differs by the offset alone.
+            let n = if p.dot(pair.offset) >= 0.0 { p } else { q };
+            self.put(pair, n, State::Corner(i, j));
+        } else {
+            self.put(pair, p, State::Corner(i, j));
+            self.put(pair, q, State::Corner(i, j));
+        }
+    }
+
+    /// Overlapping polytopes: every maximum of s is a corner, and all corners are candidates.
+    fn best_corner<A: Core, B: Core>(&self, pair: &Pair<A, B>, first: Summit) -> Found {
+        let mut best = first;
+        for &(s, n, state) in &self.list[..self.count] {
+            if matches!(state, State::Corner(..)) && (s > best.s || !best.converged) {
+                let (a, b) = pair.line_up(n);
+                best = Summit {
+                    n,
+                    s,
+                    points: (a, b),
+                    converged: true,
+                    ..best
+                };
+            }
+        }
+        Found {
+            summit: best,
+            capped: !best.converged,
+        }
+    }
+
+    /// Climbs from the most promising candidates with what is left of the budget.
+    fn climb<A: Core, B: Core>(&mut self, pair: &Pair<A, B>, first: Summit, goal: Goal) -> Found {
+        let list = &mut self.list[..self.count];
+        let margin = (MARGIN * pair.size).min(2.0 * first.s.abs() + 0.01 * pair.size);
+        let mut best = first;
+        let mut used = first.iterations;
+        let mut capped = !first.converged;
+        for _ in 0..POLISHED {
+            let Some(next) = next_best(list, best.s - margin) else {
+                break;
+            };
+            let (_, n, state) = std::mem::replace(next, (f64::NEG_INFINITY, DVec3::Y, State::Free));
+            if n.dot(best.n) > 1.0 - 1e-9 {
+                continue;
+            }
+            if used >= goal.cap {
+                capped = true;
+                break;
+            }
+            let cap = goal.cap - used;
+            let other = Search::run(pair, n, state, Goal { cap, ..goal });
+            used += other.iterations;
+            capped |= !other.converged;
+            if other.s > best.s || (other.s > 0.0 && other.converged) {
+                best = other;
+            }
+            if best.s > 0.0 && best.converged {
+                capped = false;
+                break;
+            }
+        }
+        best.iterations = used;
+        Found {
+            summit: best,
+            capped,
+        }
+    }
+}
+
+/// The candidate with the largest s above `floor`.
+fn next_best(list: &mut [(f64, DVec3, State)], floor: f64) -> Option<&mut (f64, DVec3, State)> {
+    let mut best = None;
+    let mut largest = floor;
+    for candidate in list {
+        if candidate.0 > largest {
+            largest = candidate.0;
+            best = Some(candidate);
+        }
+    }
+    best
+}
+
+/// Outward axes of the flat ends, where there are any.
+fn ends<C: Core>(core: &C) -> [Option<DVec3>; 2] {
+    let end = |sides| {
+        let disc = core.disc(sides);
+        (C::DISCS && disc.radius > 0.0).then_some(disc.axis)
+    };
+    [end(0), end(1)]
+}
