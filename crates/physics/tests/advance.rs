@@ -85,7 +85,7 @@ fn no_motion_within_its_bounds_closes_the_gap_before_the_certified_time() {
         let pick = |random: &mut Random| ((random.next() * 0.5 + 0.5) * 5.0) as usize;
         let bodies = [pick(&mut random), pick(&mut random)].map(|i| &shapes[i]);
         let start = [0, 1].map(|_| Pose::new(random.vector() * 0.8, random.rotation()));
-        let parts = bodies.map(|b| b.parts()[0].shape);
+        let parts = bodies.map(|b| b.parts()[0].shape.clone());
         let (x, y) = ((&parts[0], &start[0]), (&parts[1], &start[1]));
         let found = separation(x, y, None, Limits::default());
         let Some(certificate) = Certificate::from_separation(&found) else {
