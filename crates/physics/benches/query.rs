@@ -1,10 +1,15 @@
-//! How fast is the detection? Against the targets and parry, on the same poses in the same rounds.
+//! How fast is the detection, and how right? Against the targets, parry and the judge of the tests.
 //!
 //! `cargo bench -p physics --bench query` runs criterion's groups, and
 //! `cargo bench -p physics --bench query -- speed [PAIRS] [CLASSES] [POSES]` prints the table of ratios, in which all
 //! three contenders take turns in every round: `-- speed cyl-ell,box near,deep 500`. A pair is chosen by any part of
-//! its name. `-- report` writes docs/detection.md.
+//! its name. `-- accuracy [PAIRS] [CLASSES] [POSES] [SEED]` judges the answers, on all cores, and prints the first wrong
+//! ones of each row; `-- case PAIR CLASS INDEX [SEED]` shows one of them in full. `-- dial` tables accuracy against the cap. `-- report` writes docs/detection.md.
 
+#[path = "query/accuracy.rs"]
+mod accuracy;
+#[path = "query/dial.rs"]
+mod dial;
 #[path = "../tests/detection/judge/mod.rs"]
 mod judge;
 #[path = "query/machine.rs"]
@@ -31,10 +36,15 @@ const POSES: usize = 200;
 pub struct Filter(Vec<String>);
 
 impl Filter {
+    /// All pairs or classes.
+    pub fn everything() -> Filter {
+        Filter(Vec::new())
+    }
+
     fn new(words: Option<&String>) -> Filter {
         let words = words.map_or("all", String::as_str);
         if words == "all" {
-            return Filter(Vec::new());
+            return Filter::everything();
         }
         Filter(words.split(',').map(str::to_owned).collect())
     }
@@ -42,6 +52,18 @@ impl Filter {
     /// Whether `name` is meant.
     pub fn takes(&self, name: &str) -> bool {
         self.0.is_empty() || self.0.iter().any(|word| name.contains(word.as_str()))
+    }
+}
+
+/// A whole number from the command line.
+fn number(word: Option<&String>, name: &str, default: usize) -> usize {
+    let Some(word) = word else { return default };
+    match word.parse() {
+        Ok(number) => number,
+        Err(_) => {
+            eprintln!("{name}: `{word}` is not a whole number");
+            std::process::exit(2);
+        }
     }
 }
 
@@ -63,7 +85,37 @@ fn main() {
                 println!("{row}");
             }
         }
-        Some("report") => report::write(POSES),
+        Some("accuracy") => {
+            let (pairs, classes) = (Filter::new(words.get(1)), Filter::new(words.get(2)));
+            let poses = number(words.get(3), "poses", accuracy::POSES);
+            let seed = number(words.get(4), "seed", accuracy::SEED as usize) as u64;
+            println!("{}", accuracy::HEAD);
+            for tally in accuracy::tallies(&pairs, &classes, poses, seed) {
+                println!("{tally}");
+                for example in &tally.examples {
+                    println!("    {example}");
+                }
+            }
+        }
+        Some("case") => {
+            let pairs = Filter::new(words.get(1));
+            let index = number(words.get(3), "index", 0);
+            let seed = number(words.get(4), "seed", accuracy::SEED as usize) as u64;
+            accuracy::show(&pairs, &Filter::new(words.get(2)), index, seed);
+        }
+        Some("dial") => {
+            println!("{}", dial::HEAD);
+            for line in dial::lines() {
+                println!("{line}");
+            }
+        }
+        Some("report") => {
+            let timed = number(words.get(1), "poses to time", POSES);
+            report::write(
+                timed,
+                number(words.get(2), "poses to judge", accuracy::POSES),
+            );
+        }
         _ => groups(),
     }
 }
@@ -71,7 +123,7 @@ fn main() {
 /// Criterion's own measurements: a group for each pair and class, with the three contenders in it.
 fn groups() {
     let mut criterion = Criterion::default().configure_from_args();
-    for scene in speed::scenes(&Filter(Vec::new()), &Filter(Vec::new()), POSES) {
+    for scene in speed::scenes(&Filter::everything(), &Filter::everything(), POSES) {
         let mut group = criterion.benchmark_group(scene.name());
         let mut next = 0;
         let mut turn = || {

@@ -5,7 +5,8 @@ use parry3d_f64::math::{Pose as ParryPose, Rotation, Vector};
 use parry3d_f64::query::details::{contact_halfspace_support_map, contact_support_map_support_map};
 use parry3d_f64::query::{Contact, contact};
 use parry3d_f64::shape::{
-    Ball, Capsule, Cone, Cuboid, Cylinder, HalfSpace, Shape as ParryShape, SupportMap,
+    Ball, Capsule, Cone, ConvexPolyhedron, Cuboid, Cylinder, HalfSpace, Shape as ParryShape,
+    SupportMap,
 };
 use physics::Pose;
 
@@ -82,6 +83,13 @@ impl Rival {
             Known::Frustum(bottom, top, h) => Rival::Map(Box::new(Frustum(bottom, top, h))),
             Known::Ellipsoid(a) => Rival::Map(Box::new(Ellipsoid(vector(a)))),
             Known::Cuboid(h) => Rival::Own(Box::new(Cuboid::new(vector(h)))),
+            Known::Cloud(ref hull) => {
+                let points: Vec<Vector> = hull.points.iter().map(|p| vector(*p)).collect();
+                let hull = ConvexPolyhedron::from_convex_hull(&points);
+                Rival::Own(Box::new(
+                    hull.expect("points in general position have a hull"),
+                ))
+            }
             Known::HalfSpace(n) => Rival::HalfSpace(HalfSpace::new(vector(n))),
             Known::Truncated(..) => unreachable!("no pair of the tables has a truncated ellipsoid"),
         }

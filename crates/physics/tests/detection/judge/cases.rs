@@ -1,11 +1,14 @@
 //! Seeded pairs of placed shapes: far, near, touching and deep.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
+use std::sync::Arc;
 
-use glam::{DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec3};
 use physics::Pose;
 
+use super::hull::Hull;
 use super::known::Known;
+use super::line::lowest;
 use crate::support::Random;
 
 /// What the two shapes of a case are to each other.
@@ -36,8 +39,11 @@ impl Class {
     }
 }
 
-/// Names of the kinds of shapes, which `random_shape` takes.
-pub const KINDS: [&str; 7] = ["ball", "caps", "cyl", "cone", "frus", "ell", "box"];
+/// Names of the kinds of bounded shapes. `random_shape` also takes `trunc` for a truncated ellipsoid and `plane` for a
+/// half-space.
+pub const KINDS: [&str; 9] = [
+    "ball", "caps", "cyl", "cone", "frus", "ell", "box", "cloud8", "cloud64",
+];
 
 /// All pairs of kinds, each once.
 pub fn pairs() -> Vec<(&'static str, &'static str)> {
@@ -75,6 +81,22 @@ impl Case {
             - self.a.height(self.pose_a.rotation.conjugate() * n)
             - self.b.height(self.pose_b.rotation.conjugate() * -n)
     }
+}
+
+/// `pairs`, and truncated ellipsoids and half-spaces with each kind.
+pub fn all_pairs() -> Vec<(&'static str, &'static str)> {
+    let more = ["trunc", "plane"]
+        .into_iter()
+        .flat_map(|a| KINDS.map(|b| (a, b)));
+    let own = [("trunc", "trunc"), ("plane", "trunc")];
+    pairs().into_iter().chain(more).chain(own).collect()
+}
+
+/// `all_pairs` without vertex clouds.
+pub fn parametric_pairs() -> Vec<(&'static str, &'static str)> {
+    let mut pairs = all_pairs();
+    pairs.retain(|pair| !pair.0.starts_with("cloud") && !pair.1.starts_with("cloud"));
+    pairs
 }
 
 /// A generator for one pair and class; the same seed gives the same cases.
@@ -126,7 +148,7 @@ pub fn rotation(random: &mut Random) -> DQuat {
 /// A shape of random sizes of about 1 m.
 ///
 /// # Panics
-/// On a kind that is not in `KINDS`.
+/// On a kind of another name.
 pub fn random_shape(kind: &str, random: &mut Random) -> Known {
     let mut size = |low: f64| between(random, low, 1.0);
     match kind {
@@ -140,8 +162,28 @@ pub fn random_shape(kind: &str, random: &mut Random) -> Known {
         "frus" => Known::Frustum(size(0.2), size(0.2), size(0.2)),
         "ell" => Known::Ellipsoid(DVec3::new(size(0.2), size(0.2), size(0.2))),
         "box" => Known::Cuboid(DVec3::new(size(0.2), size(0.2), size(0.2))),
+        "cloud8" => cloud(8, random),
+        "cloud64" => cloud(64, random),
+        "trunc" => {
+            let a = DVec3::new(size(0.2), size(0.2), size(0.2));
+            Known::Truncated(a, -0.95 * a.y * size(0.1))
+        }
+        "plane" => Known::HalfSpace(direction(random)),
         _ => panic!("no shape is called {kind}"),
     }
+}
+
+/// Points on a random ellipsoid about their own middle, so that the origin is inside.
+fn cloud(count: usize, random: &mut Random) -> Known {
+    let semi = DVec3::new(
+        between(random, 0.2, 1.0),
+        between(random, 0.2, 1.0),
+        between(random, 0.2, 1.0),
+    );
+    let points: Vec<DVec3> = (0..count).map(|_| semi * direction(random)).collect();
+    let middle = points.iter().sum::<DVec3>() / count as f64;
+    let points = points.into_iter().map(|p| p - middle).collect();
+    Known::Cloud(Arc::new(Hull::new(points)))
 }
 
 /// Two random shapes in random orientations, moved along a random line until their gap is the class's.
@@ -162,7 +204,7 @@ pub fn case(pair: (&str, &str), class: Class, random: &mut Random) -> Case {
         Class::Near => distance_for(&case, along, 0.02),
         Class::Touching if random.next() < 0.0 => distance_for(&case, along, -magnitude),
         Class::Touching => distance_for(&case, along, magnitude),
-        Class::Deep => 0.75 * distance_for(&case, along, 0.0),
+        Class::Deep => 0.75 * distance_for(&case, along, 1e-3),
     };
     case.pose_b.position = centre + along * distance;
     case
@@ -172,38 +214,19 @@ pub fn case(pair: (&str, &str), class: Class, random: &mut Random) -> Case {
 ///
 /// The gap at distance t is at least g where some normal n has `t n.along - h(n) >= g |n|`, with h the sum of both
 /// heights. So t is the smallest `(h(n) + g |n|) / n.along`, and on the plane `n.along = 1` that is a convex
-/// function, which two nested golden sections minimise. With g < 0 it is so nearly, for the small overlaps here.
+/// function, which two nested line searches minimise. With g < 0 it is so nearly, for the small overlaps here.
 pub fn distance_for(case: &Case, along: DVec3, gap: f64) -> f64 {
     let (u, v) = along.any_orthonormal_pair();
-    let (to_a, to_b) = (
-        case.pose_a.rotation.conjugate(),
-        case.pose_b.rotation.conjugate(),
-    );
+    let to_a = DMat3::from_quat(case.pose_a.rotation.conjugate());
+    let to_b = DMat3::from_quat(case.pose_b.rotation.conjugate());
     let height = |n: DVec3| case.a.height(to_a * n) + case.b.height(to_b * -n) + gap * n.length();
     // Angles instead of offsets: the whole plane lies in a bounded square, and what falls and rises still does.
     let edge = FRAC_PI_2 - 0.01;
-    golden(edge, |x| {
+    // Errors of the distance are about as large as these of the angles: a tenth of the smallest touching gap.
+    let precision = if gap.abs() < 1e-3 { 1e-8 } else { 1e-5 };
+    let (_, distance) = lowest(edge, precision, |x| {
         let row = along + u * x.tan();
-        golden(edge, |y| height(row + v * y.tan()))
-    })
-}
-
-/// Smallest value on [-edge, edge] of a function that falls, then rises.
-fn golden(edge: f64, f: impl Fn(f64) -> f64) -> f64 {
-    const RATIO: f64 = 0.618_033_988_749_894_9;
-    let (mut low, mut high) = (-edge, edge);
-    let (mut x, mut y) = (high - RATIO * (high - low), low + RATIO * (high - low));
-    let (mut fx, mut fy) = (f(x), f(y));
-    while high - low > 1e-9 {
-        if fx < fy {
-            (high, y, fy) = (y, x, fx);
-            x = high - RATIO * (high - low);
-            fx = f(x);
-        } else {
-            (low, x, fx) = (x, y, fy);
-            y = low + RATIO * (high - low);
-            fy = f(y);
-        }
-    }
-    fx.min(fy)
+        lowest(edge, precision, |y| height(row + v * y.tan())).1
+    });
+    distance
 }
