@@ -12,11 +12,15 @@ mod bundle;
 mod closed;
 mod cores;
 mod flats;
+mod manifold;
+mod outline;
 mod pair;
 mod path;
 mod search;
 mod solve;
 mod starts;
+
+pub use manifold::{ContactPoint, Manifold, manifold};
 
 use glam::{DMat3, DVec3};
 
