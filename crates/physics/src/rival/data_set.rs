@@ -17,7 +17,9 @@ pub struct Piece {
     pub pose: Pose,
     /// The parametric shape.
     pub shape: Shape,
-    /// The polyhedron inscribed in it.
+    /// Radius of a ball about its origin that holds it [m].
+    pub radius: f64,
+    /// The polyhedron inscribed in the shape.
     pub polyhedron: Polyhedron,
 }
 
@@ -28,6 +30,57 @@ pub struct Object {
     pub pieces: Vec<Piece>,
     /// Radius of a ball about its origin that holds all of them [m].
     pub radius: f64,
+}
+
+/// A piece put somewhere.
+#[derive(Clone, Copy, Debug)]
+pub struct PlacedPiece<'a> {
+    /// What is there.
+    pub piece: &'a Piece,
+    /// `world_from_piece`.
+    pub pose: Pose,
+}
+
+/// An object put somewhere.
+#[derive(Clone, Debug)]
+pub struct PlacedObject<'a> {
+    radius: f64,
+    position: DVec3,
+    pieces: Vec<PlacedPiece<'a>>,
+}
+
+impl Object {
+    /// The object at `pose`, `world_from_object`.
+    pub fn place(&self, pose: &Pose) -> PlacedObject<'_> {
+        let place = |piece| PlacedPiece {
+            piece,
+            pose: *pose * piece.pose,
+        };
+        PlacedObject {
+            radius: self.radius,
+            position: pose.position,
+            pieces: self.pieces.iter().map(place).collect(),
+        }
+    }
+}
+
+impl<'a> PlacedObject<'a> {
+    /// Whether two objects overlap: spheres about the objects first, spheres about their pieces next, and for what is
+    /// left `overlap`, until it finds a pair of pieces that do. So every method is spared the same.
+    pub fn overlaps(
+        &self,
+        other: &PlacedObject<'a>,
+        mut overlap: impl FnMut(PlacedPiece<'a>, PlacedPiece<'a>) -> bool,
+    ) -> bool {
+        let near = |p: DVec3, q: DVec3, reach: f64| p.distance_squared(q) <= reach * reach;
+        near(self.position, other.position, self.radius + other.radius)
+            && self.pieces.iter().any(|p| {
+                other.pieces.iter().any(|q| {
+                    let reach = p.piece.radius + q.piece.radius;
+                    near(p.pose.position, q.pose.position, reach) && overlap(*p, *q)
+                })
+            })
+    }
 }
 
 /// Seven composite objects of 22 primitives with exactly this many polygons; `None` for fewer than 118.
@@ -48,10 +101,11 @@ pub fn data_set(polygons: usize) -> Option<Vec<Object>> {
                 pose,
                 polyhedron: Polyhedron::of(&shape, sides)
                     .expect("the objects are of shapes that can be tessellated"),
+                radius: shape.bounding_radius(),
                 shape,
             })
             .collect();
-        let reach = |p: &Piece| p.pose.position.length() + p.shape.bounding_radius();
+        let reach = |p: &Piece| p.pose.position.length() + p.radius;
         let radius = pieces.iter().map(reach).fold(0.0, f64::max);
         Object { pieces, radius }
     };

@@ -9,7 +9,7 @@ mod data_set;
 mod polyhedron;
 mod tessellate;
 
-pub use data_set::{Object, PAPER_POLYGONS, Piece, data_set};
+pub use data_set::{Object, PAPER_POLYGONS, Piece, PlacedObject, PlacedPiece, data_set};
 pub use polyhedron::Polyhedron;
 pub use tessellate::{MIN_SIDES, polygon_count};
 
@@ -47,19 +47,5 @@ impl Rival {
                 .edges()
                 .iter()
                 .any(|&[i, j]| b.0.meets_segment(at(i), at(j)))
-    }
-
-    /// Whether two objects of the data set overlap or touch: spheres about the objects, then every pair of parts.
-    pub fn objects_overlap(&mut self, a: (&Object, &Pose), b: (&Object, &Pose)) -> bool {
-        let reach = a.0.radius + b.0.radius;
-        if a.1.position.distance_squared(b.1.position) > reach * reach {
-            return false;
-        }
-        a.0.pieces.iter().any(|p| {
-            let at_p = *a.1 * p.pose;
-            b.0.pieces
-                .iter()
-                .any(|q| self.overlap((&p.polyhedron, &at_p), (&q.polyhedron, &(*b.1 * q.pose))))
-        })
     }
 }
