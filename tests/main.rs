@@ -6,6 +6,8 @@ mod assets;
 mod bad_input;
 /// Pictures of hand-set states, both eyes, against references.
 mod golden;
+/// Questions to the collision detection, in JSON lines.
+mod query;
 /// A recording of the real program: what is in it, and what a replay finds.
 mod recording;
 /// The release velocity comes out of the poses as it does out of measured velocities.

@@ -11,7 +11,8 @@ Examples:
   bowling play --device desk              bowl with the mouse (F1 in the window shows the keys)
   bowling play --offscreen --frames 3     a short scripted recording, no screen needed
   bowling play --set objects.elasticity=0.9   change one setting for this run
-  bowling replay out/2026-01-31T10-15-00Z-seed1   check a recording to the last bit";
+  bowling replay out/2026-01-31T10-15-00Z-seed1   check a recording to the last bit
+  bowling query pairs.jsonl --time        how far apart are two shapes, and how long does it take to tell";
 
 /// Immersive pin bowling for presence experiments.
 ///
@@ -59,7 +60,7 @@ impl Arguments {
     }
 }
 
-/// The two things that the program does.
+/// What the program does.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Bowl: a game under Red and one under Blue, recorded into a folder.
@@ -73,6 +74,13 @@ pub enum Command {
     ///
     /// Fails when the final state, a score, an event or the motion table differs from what was recorded.
     Replay(ReplayArguments),
+    /// Ask the collision detection about pairs of shapes, one JSON object a line.
+    ///
+    /// A line is {"a":{"shape":"cylinder","radius":0.5,"half_height":0.3,"position":[x,y,z],
+    /// "rotation":[x,y,z,w]},"b":{...}}; docs/query.md lists shapes and answers. Lengths are in
+    /// metres. Each line is answered in its place, a bad one with the reason, and then the exit
+    /// code is 1.
+    Query(QueryArguments),
 }
 
 /// Who or what bowls.
@@ -152,6 +160,49 @@ pub struct PlayArguments {
     /// config/default.toml, with dots between table and key.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub settings: Vec<String>,
+}
+
+/// What is asked about two shapes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Question {
+    /// Are they apart? Stops at the first separating normal.
+    Apart,
+    /// How far: the signed gap with its bounds.
+    Gap,
+    /// Where they touch: the gap, its depth and up to four points of contact.
+    Contact,
+}
+
+/// Arguments of `bowling query`.
+#[derive(Debug, Args)]
+pub struct QueryArguments {
+    /// File of JSON lines [default: standard input].
+    #[arg(value_name = "FILE")]
+    pub file: Option<PathBuf>,
+
+    /// Largest number of iterations for a query; 5 to 20 in the paper.
+    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..))]
+    pub cap: u32,
+
+    /// A search ends when it expects to gain less than this, in metres.
+    #[arg(long, value_name = "T", allow_negative_numbers = true, default_value = "1e-13", value_parser = tolerance)]
+    pub tolerance: f64,
+
+    /// What is asked.
+    #[arg(long, value_enum, default_value = "gap")]
+    pub question: Question,
+
+    /// Then ask everything again and again, and write the median time of a query, without reading
+    /// and writing, to standard error.
+    #[arg(long)]
+    pub time: bool,
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(value) if value > 0.0 && f64::is_finite(value) => Ok(value),
+        _ => Err("a tolerance is a positive number of metres".to_owned()),
+    }
 }
 
 /// Arguments of `bowling replay`.

@@ -1,6 +1,6 @@
 //! The `bowling` program: who bowls, what is recorded, what is drawn.
 //!
-//! Entry points: [`run`] reads the command line; [`play`] and [`replay`] are the two commands; a
+//! Entry points: [`run`] reads the command line; [`play`], [`replay`] and [`query`] are the commands; a
 //! [`session::Session`] takes one input per displayed frame from any device.
 
 pub mod args;
@@ -13,6 +13,7 @@ pub mod motion;
 pub mod output;
 pub mod pictures;
 pub mod play;
+pub mod query;
 pub mod random;
 pub mod rehearsal;
 pub mod replay;
@@ -63,5 +64,6 @@ fn obey(arguments: &Arguments) -> Result<()> {
         }
         Some(Command::Play(play)) => play::play(play, &root::find(arguments.root.as_deref())?),
         Some(Command::Replay(arguments)) => replay::replay(&arguments.folder),
+        Some(Command::Query(arguments)) => query::query(arguments),
     }
 }
