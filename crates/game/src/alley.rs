@@ -1,19 +1,20 @@
 //! The building: every part of the room that never moves, as boxes, and the places that follow from the measures.
 
+mod furniture;
+
 use glam::{DQuat, DVec3};
 use physics::Pose;
 
 use crate::config::{Config, LaneConfig};
 use crate::visible::Model;
 
+pub(crate) use furniture::{Footprint, ball_homes, button_foot, footprints};
+
 /// How far walls and floors reach beyond what is seen [m]: thick enough that nothing passes at any speed.
 const MASSIVE: f64 = 0.5;
 
 /// Thickness of what is painted on the floor [m].
 const PAINT: f64 = 0.002;
-
-/// Thickness of the rack's tray and of the desk's top [m].
-const BOARD: f64 = 0.04;
 
 /// A box of the building.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,8 +47,8 @@ pub(crate) fn parts(config: &Config) -> Vec<Part> {
     parts.extend(gutters(config));
     parts.extend(pit(config));
     parts.extend(walls(config));
-    parts.extend(rack(config));
-    parts.extend(desk(config));
+    parts.extend(furniture::rack(config));
+    parts.extend(furniture::desk(config));
     parts
 }
 
@@ -80,33 +81,6 @@ pub(crate) fn pin_spots(lane: &LaneConfig) -> Vec<DVec3> {
         }
     }
     spots
-}
-
-/// Centre of each ball on the rack [m].
-pub(crate) fn ball_homes(config: &Config) -> Vec<DVec3> {
-    let rack = &config.rack;
-    let mut z = rack.z_m - rack_length(config) / 2.0 + rack.rim_thickness_m;
-    let mut homes = Vec::new();
-    for ball in &config.balls {
-        let cell = ball.diameter_m + 2.0 * rack.clearance_m;
-        homes.push(DVec3::new(
-            rack.x_m,
-            rack.tray_height_m + ball.radius_m(),
-            z + cell / 2.0,
-        ));
-        z += cell + rack.rim_thickness_m;
-    }
-    homes
-}
-
-/// Middle of a button's foot on the desk [m]; `side` is -1 for the left one and 1 for the right one.
-pub(crate) fn button_foot(config: &Config, side: f64) -> DVec3 {
-    let desk = &config.desk;
-    DVec3::new(
-        desk.x_m + side * desk.button_spacing_m / 2.0,
-        desk.height_m,
-        desk.z_m,
-    )
 }
 
 /// Lane, approach and the floors beside: all tops at y = 0.
@@ -252,84 +226,6 @@ fn walls(config: &Config) -> Vec<Part> {
     ]
 }
 
-/// Length of the rack along the lane [m].
-fn rack_length(config: &Config) -> f64 {
-    let cells: f64 = config
-        .balls
-        .iter()
-        .map(|ball| ball.diameter_m + 2.0 * config.rack.clearance_m)
-        .sum();
-    cells + (config.balls.len() as f64 + 1.0) * config.rack.rim_thickness_m
-}
-
-/// A tray with a rim around it and between the balls, on two feet.
-fn rack(config: &Config) -> Vec<Part> {
-    let rack = &config.rack;
-    let (rim, tray) = (rack.rim_thickness_m, rack.tray_height_m);
-    let widest = config
-        .balls
-        .iter()
-        .map(|ball| ball.diameter_m)
-        .fold(0.0, f64::max);
-    let half_inside = widest / 2.0 + rack.clearance_m;
-    let half = half_inside + rim;
-    let (near, far) = (
-        rack.z_m + rack_length(config) / 2.0,
-        rack.z_m - rack_length(config) / 2.0,
-    );
-    let (x0, x1) = (rack.x_m - half, rack.x_m + half);
-    let plank = |low: DVec3, high: DVec3| Part::between(Model::Rack, low, high);
-    let rim_top = tray + rack.rim_height_m;
-    let mut parts = vec![
-        plank(
-            DVec3::new(x0, tray - BOARD, far),
-            DVec3::new(x1, tray, near),
-        ),
-        plank(
-            DVec3::new(x0, tray, far),
-            DVec3::new(x0 + rim, rim_top, near),
-        ),
-        plank(
-            DVec3::new(x1 - rim, tray, far),
-            DVec3::new(x1, rim_top, near),
-        ),
-    ];
-    let (inner0, inner1) = (x0 + rim, x1 - rim);
-    let mut z = far;
-    let cells = config
-        .balls
-        .iter()
-        .map(|ball| ball.diameter_m + 2.0 * rack.clearance_m);
-    for cell in cells.chain([0.0]) {
-        parts.push(plank(
-            DVec3::new(inner0, tray, z),
-            DVec3::new(inner1, rim_top, z + rim),
-        ));
-        z += rim + cell;
-    }
-    for foot in [far, near - BOARD] {
-        parts.push(plank(
-            DVec3::new(x0, 0.0, foot),
-            DVec3::new(x1, tray - BOARD, foot + BOARD),
-        ));
-    }
-    parts
-}
-
-/// A top on two side boards.
-fn desk(config: &Config) -> Vec<Part> {
-    let desk = &config.desk;
-    let (x0, x1) = (desk.x_m - desk.width_m / 2.0, desk.x_m + desk.width_m / 2.0);
-    let (z0, z1) = (desk.z_m - desk.depth_m / 2.0, desk.z_m + desk.depth_m / 2.0);
-    let (top, under) = (desk.height_m, desk.height_m - BOARD);
-    let board = |low: DVec3, high: DVec3| Part::between(Model::Desk, low, high);
-    vec![
-        board(DVec3::new(x0, under, z0), DVec3::new(x1, top, z1)),
-        board(DVec3::new(x0, 0.0, z0), DVec3::new(x0 + BOARD, under, z1)),
-        board(DVec3::new(x1 - BOARD, 0.0, z0), DVec3::new(x1, under, z1)),
-    ]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -400,20 +296,6 @@ mod tests {
                 last = if side > 0.0 { here } else { last };
             }
             x += 0.001;
-        }
-    }
-
-    #[test]
-    fn balls_lie_in_their_cells() {
-        let config = default_config();
-        let parts = parts(&config);
-        for (home, ball) in ball_homes(&config).iter().zip(&config.balls) {
-            for part in parts.iter().filter(|part| part.is_solid) {
-                let local = part.pose.inverse().transform_point(*home);
-                let nearest = local.clamp(-part.size / 2.0, part.size / 2.0);
-                let gap = (local - nearest).length() - ball.radius_m();
-                assert!(gap > -1e-12, "{part:?} reaches {gap} into a ball");
-            }
         }
     }
 }

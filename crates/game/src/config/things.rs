@@ -109,6 +109,8 @@ pub struct WalkingConfig {
     pub speed_mps: f64,
     /// Time from standing to full speed, and back [s].
     pub ramp_s: f64,
+    /// How close the head may walk to the rack and the desk [m].
+    pub furniture_margin_m: f64,
 }
 
 /// How a release velocity is estimated from poses alone.

@@ -165,6 +165,18 @@ fn walls_stop_a_walk_and_the_lane_does_not() {
 }
 
 #[test]
+fn the_desk_stops_a_walk() {
+    let mut player = Player::new(conditions(&[]), 1);
+    player.walk_to(-1.1, 3.0);
+    player.head.rotation = DQuat::IDENTITY;
+    player.input.walk_forward = true;
+    player.wait(2.0);
+    let head = player.game.head_pose_world().unwrap().position;
+    // The desk's near side at 1.9 + 0.4 / 2, and the margin of 0.12 before it.
+    assert!((head.z - 2.22).abs() < 1e-9, "{head}");
+}
+
+#[test]
 fn a_hand_fells_a_pin_and_the_machine_puts_it_back() {
     let mut player = Player::new(conditions(&[]), 1);
     player.key(Button::Red);

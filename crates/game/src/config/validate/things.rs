@@ -153,6 +153,7 @@ pub(super) fn hand(config: &Config) -> Result<(), Invalid> {
         &[
             ("speed_mps", walking.speed_mps, 0.1, 5.0),
             ("ramp_s", walking.ramp_s, 0.0, 5.0),
+            ("furniture_margin_m", walking.furniture_margin_m, 0.0, 0.5),
         ],
     )?;
     ranges(
