@@ -74,7 +74,7 @@ fn meshes(profile: &[(f32, f32)]) -> [(&'static str, Mesh); 7] {
         ("pin", pieces::pin(profile)),
         ("ball", pieces::ball()),
         ("hand_open", pieces::hand(0.0)),
-        ("hand_closed", pieces::hand(1.0)),
+        ("hand_closed", pieces::hand(0.4)),
         ("button_round", pieces::button(true)),
         ("button_square", pieces::button(false)),
         ("box", cuboid(glam::Vec3::ONE)),

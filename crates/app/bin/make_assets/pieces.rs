@@ -61,7 +61,8 @@ pub fn ball() -> Mesh {
     sphere(1.0, 28, 16)
 }
 
-/// A right hand about its palm: fingers along -z, palm down, thumb to the left; `curl` 0 is open, 1 is closed.
+/// A right hand about its palm: fingers along -z, palm down, thumb to the left; `curl` 0 is open, 1 is a fist,
+/// and at 0.4 the fingers lie round a ball or in its holes.
 pub fn hand(curl: f32) -> Mesh {
     let mut hand = Mesh::default();
     let palm = sphere(1.0, 14, 8);

@@ -15,6 +15,8 @@ const GRAB_GAP: f64 = 0.06;
 const ARROWS_Z: f64 = -4.3;
 /// How far the body stands from what it reaches for [m].
 const REACH_DISTANCE: f64 = 0.55;
+/// Angle of the arm to the vertical when the hand closes on a ball [rad].
+const GRAB_ANGLE: f64 = 0.6;
 /// How far the knees bend for a reach and for a throw [m].
 const BEND: f64 = 0.25;
 /// How high a ball is lifted before it is carried off, clear of rims and of its neighbours [m].
@@ -23,7 +25,7 @@ const LIFT: f64 = 0.3;
 const CARRY_ANGLE: f64 = 0.5;
 /// Time for the backswing [s].
 const BACK_TIME: f64 = 0.9;
-/// The hand hovers this far above a button before it presses [m].
+/// The hand hovers this far from a button or a ball before it comes on [m].
 const HOVER: f64 = 0.12;
 /// Distance from the head pin's spot at which a target off the centre counts as the head pin [m].
 const PIN_SPOT: f64 = 0.1;
@@ -59,19 +61,22 @@ pub fn press(
     ]
 }
 
-/// Walk to a ball, close the hand on it from above, and lift it off the rack.
+/// Walk to a ball, close the hand on it from above as the arm comes, and lift it off the rack.
 pub fn fetch(ball: BallSeen, from: DVec2) -> Vec<Action> {
     let spot = DVec2::new(ball.position.x, ball.position.z);
     // Straight across from the lane's middle: between the balls' neighbours nothing is in the way.
     let side = DVec2::new(spot.x - REACH_DISTANCE.copysign(spot.x), spot.y);
-    let down = fingers_along_arm(0.0);
-    let grip = ball.position + DVec3::Y * (ball.radius + GRAB_GAP);
+    let ahead = (spot - side).normalize();
+    let fingers = DVec3::new(ahead.x, 0.0, ahead.y) * libm::sin(GRAB_ANGLE)
+        - DVec3::Y * libm::cos(GRAB_ANGLE);
+    let down = fingers_along_arm(GRAB_ANGLE);
+    let grip = ball.position - fingers * (ball.radius + GRAB_GAP);
     vec![
         Action::Look(ball.position),
         Action::Walk(side),
         Action::Stand(side, yaw_towards(spot - side)),
         Action::Bend(BEND * 0.6),
-        Action::Reach(HandGoal::World(grip + DVec3::Y * 0.12, down), 0.8),
+        Action::Reach(HandGoal::World(grip - fingers * HOVER, down), 0.8),
         Action::Reach(HandGoal::World(grip, down), 0.4),
         Action::Trigger(1.0, 0.12),
         Action::Wait(0.1),
