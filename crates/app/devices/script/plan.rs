@@ -109,6 +109,12 @@ pub fn deliver(
         backswing: person.backswing_deg.to_radians(),
         peak_rate: speed / (person.arm_length_m + GRAB_GAP + ball.radius),
         back_time: BACK_TIME,
+        ball_distance: GRAB_GAP + ball.radius,
+        wrist: DVec3::new(
+            0.0,
+            radps(person.tilt_spin_scatter_rpm) * random.normal(),
+            radps(person.side_spin_scatter_rpm) * random.normal(),
+        ),
     };
     let release =
         swing.time_of_lowest_point() - lateness + person.timing_scatter_s * random.normal();
@@ -131,6 +137,11 @@ pub fn deliver(
         Action::Bend(0.0),
         Action::Reach(relaxed_hand(person), 0.8),
     ]
+}
+
+/// Revolutions per minute in [rad/s].
+fn radps(rpm: f64) -> f64 {
+    rpm * std::f64::consts::TAU / 60.0
 }
 
 /// The point of the deck (x, z) that the ball is sent to.

@@ -24,6 +24,10 @@ pub struct Swing {
     pub peak_rate: f64,
     /// Time for the way back [s].
     pub back_time: f64,
+    /// From the middle of the hand to the middle of the ball beyond the fingers [m].
+    pub ball_distance: f64,
+    /// Turn of the wrist at the lowest point, about the ball's middle [rad/s]: it spins the ball and leaves its way alone.
+    pub wrist: DVec3,
 }
 
 impl Swing {
@@ -60,16 +64,31 @@ impl Swing {
         )
     }
 
-    /// The hand at `time`, with its fingers along the arm.
+    /// How far the wrist has turned, as a share of `wrist` [s], and the rate of that [1].
+    ///
+    /// It turns with the square of the arm's speed: not on the way back, fastest at the lowest point.
+    fn wrist_turn(&self, time: f64) -> (f64, f64) {
+        let frequency = self.peak_rate / self.backswing;
+        let phase = (frequency * (time - self.back_time)).clamp(0.0, PI);
+        let sine = libm::sin(phase);
+        let turned = 0.5 * (phase - sine * libm::cos(phase)) / frequency;
+        (turned, sine * sine)
+    }
+
+    /// The hand at `time`: its fingers along the arm, but for the turn of the wrist.
     pub fn hand(&self, time: f64) -> HandState {
         let (angle, rate) = self.angle(time);
-        let from_shoulder = DQuat::from_rotation_x(angle) * DVec3::new(0.0, -self.arm_length, 0.0);
-        let rotation = fingers_along_arm(angle);
-        let angular = DVec3::X * rate;
+        let (turned, turning) = self.wrist_turn(time);
+        let arm = DQuat::from_rotation_x(angle) * DVec3::NEG_Y;
+        let ball = arm * (self.arm_length + self.ball_distance);
+        let swing = DVec3::X * rate;
+        let twist = DQuat::from_scaled_axis(self.wrist * turned);
+        let angular = self.wrist * turning + twist * swing;
+        let from_ball = twist * (arm * -self.ball_distance);
         HandState {
-            position: self.shoulder + from_shoulder,
-            rotation,
-            linear: angular.cross(from_shoulder),
+            position: self.shoulder + ball + from_ball,
+            rotation: twist * fingers_along_arm(angle),
+            linear: swing.cross(ball) + angular.cross(from_ball),
             angular,
         }
     }
@@ -107,6 +126,8 @@ mod tests {
             backswing: 1.3,
             peak_rate: 9.0,
             back_time: 0.8,
+            ball_distance: 0.17,
+            wrist: DVec3::new(0.0, -1.5, 3.0),
         }
     }
 
@@ -146,7 +167,10 @@ mod tests {
 
     #[test]
     fn lowest_point_is_reached_at_peak_rate() {
-        let swing = swing();
+        let swing = Swing {
+            wrist: DVec3::ZERO,
+            ..swing()
+        };
         let (angle, rate) = swing.angle(swing.time_of_lowest_point());
         assert!(
             angle.abs() < 1e-12 && (rate - 9.0).abs() < 1e-12,
@@ -158,6 +182,34 @@ mod tests {
             "{}",
             hand.linear
         );
+    }
+
+    #[test]
+    fn wrist_spins_the_ball_and_leaves_its_way_alone() {
+        let (swing, straight) = (
+            swing(),
+            Swing {
+                wrist: DVec3::ZERO,
+                ..swing()
+            },
+        );
+        let ball = |swing: &Swing, time: f64| {
+            let hand = swing.hand(time);
+            let arm = hand.rotation * DVec3::NEG_Z * swing.ball_distance;
+            (
+                hand.position + arm,
+                hand.linear + hand.angular.cross(arm),
+                hand.angular,
+            )
+        };
+        for time in [0.5, 0.9, swing.time_of_lowest_point(), 1.1] {
+            let (turned, plain) = (ball(&swing, time), ball(&straight, time));
+            assert!(turned.0.abs_diff_eq(plain.0, 1e-12), "{time}");
+            assert!(turned.1.abs_diff_eq(plain.1, 1e-12), "{time}");
+        }
+        let spin = ball(&swing, swing.time_of_lowest_point()).2;
+        let roll = DQuat::from_scaled_axis(swing.wrist * 0.5 * swing.quarter()) * DVec3::X * 9.0;
+        assert!(spin.abs_diff_eq(swing.wrist + roll, 1e-9), "{spin}");
     }
 
     #[test]

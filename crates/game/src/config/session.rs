@@ -153,6 +153,10 @@ pub struct ParticipantConfig {
     pub place_scatter_m: f64,
     /// Standard deviation of the instant at which the hand opens [s].
     pub timing_scatter_s: f64,
+    /// Standard deviation of the wrist's turn about the way ahead at the lowest point [revolutions/min]: side spin.
+    pub side_spin_scatter_rpm: f64,
+    /// Standard deviation of its turn about the vertical there [revolutions/min]: tilted spin.
+    pub tilt_spin_scatter_rpm: f64,
     /// How far behind the foul line the swing takes place [m].
     pub stand_behind_foul_line_m: f64,
     /// Where on the pin deck the ball is meant to arrive, to the right of the head pin [m].

@@ -157,6 +157,18 @@ pub(super) fn participant(config: &Config) -> Result<(), Invalid> {
             ("aim_scatter_deg", person.aim_scatter_deg, 0.0, 20.0),
             ("place_scatter_m", person.place_scatter_m, 0.0, 0.5),
             ("timing_scatter_s", person.timing_scatter_s, 0.0, 0.2),
+            (
+                "side_spin_scatter_rpm",
+                person.side_spin_scatter_rpm,
+                0.0,
+                300.0,
+            ),
+            (
+                "tilt_spin_scatter_rpm",
+                person.tilt_spin_scatter_rpm,
+                0.0,
+                300.0,
+            ),
             ("stand_behind_foul_line_m", behind, 0.0, 3.0),
             ("target_x_m", person.target_x_m, -1.0, 1.0),
         ],
