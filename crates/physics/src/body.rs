@@ -13,6 +13,9 @@ use crate::pose::Pose;
 pub use def::{BodyDef, MassProperties, Material, Motion};
 pub(crate) use motion::{Sweep, turn};
 
+/// Rates of a body that nothing carries.
+const STRAIGHT: [(DVec3, DVec3); 2] = [(DVec3::ZERO, DVec3::ZERO); 2];
+
 /// A body in a world. Read it here, change it through the world.
 #[derive(Clone, Debug)]
 pub struct Body {
@@ -32,8 +35,9 @@ pub struct Body {
     pub(crate) turning: DVec3,
     /// Acceleration for the rest of the step [m/s2]: gravity in flight, zero while something carries the body.
     pub(crate) acceleration: DVec3,
-    /// Rates of velocity [m/s2] and momentum [N m] while something carries the body; see `linear_now`.
-    pub(crate) bend: (DVec3, DVec3),
+    /// Rates of velocity [m/s2] and momentum [N m] while something carries the body, before and after the middle of
+    /// its stretch of time; see `linear_now`.
+    pub(crate) bend: [(DVec3, DVec3); 2],
     /// Middle of the stretch of time to which velocity and momentum of a carried body belong [s].
     pub(crate) middle: f64,
     /// Time inside the current step up to which the state has been brought [s].
@@ -86,7 +90,7 @@ impl Body {
             momentum: DVec3::ZERO,
             turning: DVec3::ZERO,
             acceleration: DVec3::ZERO,
-            bend: (DVec3::ZERO, DVec3::ZERO),
+            bend: STRAIGHT,
             middle: 0.0,
             clock: 0.0,
             end: def.pose,
@@ -187,20 +191,27 @@ impl Body {
 
     /// Velocity at the body's clock [m/s].
     ///
-    /// A carried body moves at a constant velocity, that of the middle of the stretch; at any other time the rate at
-    /// which its contacts and gravity bend its way is to be added. At the end of a step there is nothing to add.
+    /// A carried body moves at a constant velocity, that of the middle of the stretch; at any other time what its
+    /// contacts and gravity do between the middle and that time is to be added. Each half has its own rate: the
+    /// velocity then lies between two that the contacts have answered, and what they take in the second half is not
+    /// given back in the first. At the end of a step there is nothing to add.
     pub(crate) fn linear_now(&self) -> DVec3 {
-        self.linear + self.bend.0 * (self.clock - self.middle)
+        self.linear + self.bend_at(self.clock).0 * (self.clock - self.middle)
     }
 
     pub(crate) fn momentum_now(&self) -> DVec3 {
-        self.momentum + self.bend.1 * (self.clock - self.middle)
+        self.momentum + self.bend_at(self.clock).1 * (self.clock - self.middle)
+    }
+
+    /// Rates of velocity [m/s2] and momentum [N m] at time `t` [s] of the step.
+    pub(crate) fn bend_at(&self, t: f64) -> (DVec3, DVec3) {
+        self.bend[usize::from(t > self.middle)]
     }
 
     /// Makes velocity and momentum those of the body's clock.
     pub(crate) fn straighten(&mut self) {
         (self.linear, self.momentum) = (self.linear_now(), self.momentum_now());
-        self.bend = (DVec3::ZERO, DVec3::ZERO);
+        self.bend = STRAIGHT;
     }
 
     /// Whether impulses move it.
@@ -254,7 +265,7 @@ impl Body {
         self.momentum = DVec3::ZERO;
         self.turning = DVec3::ZERO;
         self.acceleration = DVec3::ZERO;
-        self.bend = (DVec3::ZERO, DVec3::ZERO);
+        self.bend = STRAIGHT;
     }
 
     pub(crate) fn inv_mass(&self) -> f64 {

@@ -83,7 +83,7 @@ fn rough_impulse(response: Response, e: f64, n: DVec3, dv: DVec3, k_inv: &DMat3)
 }
 
 /// The largest friction rate up to `mu` whose impulse does not pull; the impulse along n is linear in it.
-fn rate_without_pull(mu: f64, smooth: f64, rough: f64) -> f64 {
+pub(crate) fn rate_without_pull(mu: f64, smooth: f64, rough: f64) -> f64 {
     let pull = smooth + mu * (rough - smooth);
     if pull <= 0.0 {
         mu

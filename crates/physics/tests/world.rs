@@ -139,14 +139,13 @@ fn a_pin_whose_centre_overhangs_the_edge_tips_off_and_one_inside_stands() {
             DVec3::new(0.0, 0.0, 1.0),
         ));
         let id = world.add(pin(&composite_pin(), m, DVec3::new(over, 0.0, 0.0)));
+        // A pin that fell tumbles: how it is turned in the end says nothing.
+        let mut most: f64 = 0.0;
         for _ in 0..720 * 4 {
             world.step();
+            most = most.max(tilt(&world, id));
         }
-        assert_eq!(
-            tilt(&world, id) > 30.0,
-            falls,
-            "centre {over} m over the edge"
-        );
+        assert_eq!(most > 30.0, falls, "centre {over} m over the edge");
     }
 }
 

@@ -129,6 +129,10 @@ impl World {
             }
         }
         self.settle_touches(touches);
+        for slot in &*struck {
+            self.bodies[*slot].still_steps = 0;
+        }
+        self.join(struck, bodies, touches, t, dt);
         self.set_off(struck, touches, t, dt);
         for slot in &*bodies {
             self.bodies[*slot].look_ahead(dt);
@@ -262,17 +266,42 @@ impl World {
         }
     }
 
-    /// Chooses flight or support of the struck bodies for the rest of the step.
-    fn set_off(&mut self, struck: &[usize], touches: &[Touch], t: f64, dt: f64) {
+    /// Adds to the bodies `struck` all that they were carried with, and so on.
+    ///
+    /// Were one body of a pile set off anew while its neighbour stays in the stretch it is in, the neighbour would
+    /// be held up twice: by what that stretch has in store for it, and by the new one.
+    fn join(
+        &mut self,
+        struck: &mut Vec<usize>,
+        bodies: &mut Vec<usize>,
+        touches: &mut Vec<Touch>,
+        t: f64,
+        dt: f64,
+    ) {
+        let mut next = 0;
+        while let Some(slot) = struck.get(next).copied() {
+            self.spread(slot, t, dt, bodies, touches);
+            // A contact that the impact ended held the two together until now.
+            for touch in touches.iter().filter(|on| on.a == slot || on.b == slot) {
+                let other = touch.a + touch.b - slot;
+                if self.bodies[other].is_dynamic() && !struck.contains(&other) {
+                    struck.push(other);
+                }
+            }
+            next += 1;
+        }
+    }
+
+    /// Chooses flight or support of bodies for the rest of the step.
+    fn set_off(&mut self, joined: &[usize], touches: &[Touch], t: f64, dt: f64) {
         let gravity = self.settings.gravity;
         let mut carried = std::mem::take(&mut self.scratch.carried);
-        for slot in struck {
+        for slot in joined {
             let is_carried = !self.pairs.contacts(*slot).is_empty();
             let body = &mut self.bodies[*slot];
             if !body.is_active() {
                 continue;
             }
-            body.still_steps = 0;
             body.straighten();
             body.acceleration = if is_carried { DVec3::ZERO } else { gravity };
             if is_carried {

@@ -3,7 +3,9 @@
 //! A carried body moves through a stretch of time (a step, or what an impact leaves of it) at one velocity, that of
 //! the stretch's middle. Half of gravity's kick and an answer of the contacts lead there from the start, another
 //! half and another answer lead on to the end; so a body that passes between flight and contact takes the velocity of
-//! that very moment along, and energy is kept to second order.
+//! that very moment along, and energy is kept to second order. What one contact gives two bodies in a stretch is a
+//! pair of opposite impulses as long as both go through the same stretch: so bodies that contacts join are always
+//! carried in one call, and all of them anew when an impact cuts the stretch of one.
 //!
 //! How the contacts are answered is in `solve.rs`.
 
@@ -52,7 +54,7 @@ impl World {
 
     /// Takes the bodies `carried` through a stretch of `span` seconds that begins at their clocks.
     ///
-    /// Other bodies of the `touches` keep the stretch they are in and only take impulses.
+    /// Other bodies of the `touches`, those that still sleep, only take impulses.
     pub(crate) fn carry(&mut self, touches: &[Touch], carried: &[usize], span: f64) {
         let half = 0.5 * span;
         let kick = self.settings.gravity * half;
@@ -75,18 +77,22 @@ impl World {
                 continue;
             }
             let inertia = body.inertia();
-            let now = &room.movers[i];
+            let (before, now) = (&room.before[i], &room.movers[i]);
+            let change = |from: &Mover, to: &Mover| {
+                let turned = inertia * (to.angular - from.angular);
+                (to.linear - from.linear, turned)
+            };
             if i < carried.len() {
                 let middle = &room.middle[i];
                 body.linear = middle.linear;
                 body.momentum = inertia * middle.angular;
-                let turned = inertia * (now.angular - middle.angular);
-                body.bend = ((now.linear - middle.linear) / half, turned / half);
+                let halves = [change(before, middle), change(middle, now)];
+                body.bend = halves.map(|(linear, turned)| (linear / half, turned / half));
                 body.middle = body.clock + half;
             } else {
-                let before = &room.before[i];
-                body.linear += now.linear - before.linear;
-                body.momentum += inertia * (now.angular - before.angular);
+                let (linear, turned) = change(before, now);
+                body.linear += linear;
+                body.momentum += turned;
             }
         }
         room.clear();
@@ -187,14 +193,21 @@ impl World {
                 touch.gap / dt
             };
         }
-        // What a driven body holds down is pushed out faster: nobody minds, and its hand is inside.
-        let driven = !self.bodies[touch.a].is_dynamic() || !self.bodies[touch.b].is_dynamic();
-        let hasty = driven && touch.gap < -1e-3;
+        // What a driven body holds down is pushed out faster: nobody minds, and its hand is inside. It takes work.
+        let hasty = touch.gap < -1e-3 && (self.is_held(touch.a) || self.is_held(touch.b));
         let fastest = if hasty {
             0.3
         } else {
             0.25 * self.resting_speed()
         };
         -((-touch.gap - SLOP).max(0.0) / dt).min(fastest)
+    }
+
+    /// Whether a body is driven, or touched by one that is.
+    fn is_held(&self, slot: usize) -> bool {
+        let driven = |slot: usize| self.bodies[slot].motion == Motion::Driven;
+        let contacts = self.pairs.contacts(slot);
+        driven(slot)
+            || self.bodies[slot].is_dynamic() && contacts.iter().any(|c| driven(c.key.other(slot)))
     }
 }

@@ -10,7 +10,7 @@ use glam::{DMat3, DVec3};
 use super::scratch::Carry;
 use super::touch::{Base, Touch};
 use crate::body::Body;
-use crate::response::compliance;
+use crate::response::{compliance, rate_without_pull};
 
 /// Most passes over the normals of a group.
 const PASSES: u32 = 40;
@@ -148,12 +148,11 @@ impl Row {
         let mut impulse = f00;
         if self.rate > 0.0 {
             let f01 = self.k.inverse() * (n * self.allowed - slip);
-            impulse = f00 + (f01 - f00) * self.rate;
-            if impulse.dot(n) > 0.0 {
-                return;
-            }
+            // Every blend stops the approach, so the largest rate that does not pull does too.
+            let rate = rate_without_pull(self.rate, f00.dot(n), f01.dot(n));
+            impulse = f00 + (f01 - f00) * rate;
         }
-        self.pressed = -impulse.dot(n);
+        self.pressed = (-impulse.dot(n)).max(0.0);
         all[self.movers.0].push(arm_a, impulse);
         all[self.movers.1].push(arm_b, -impulse);
     }
