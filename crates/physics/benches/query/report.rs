@@ -39,7 +39,7 @@ wider than 1e-7 of the size. Unsaid: wrong, and not marked as capped. Warm: from
 const DIAL: &str = "\
 ## The dial
 
-What an iteration buys: poses 20 mm apart whose gap is known, all pairs; how far below the truth the proven gap is.
+What an iteration buys: poses 20 mm apart whose gap is known, pairs without spheres and clouds; how far below the truth the proven gap is.
 
 ";
 

@@ -1,9 +1,11 @@
 //! Faces, lines, rims and apexes that meet exactly, and one unit in the last place off.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+use std::ops::RangeInclusive;
 
 use glam::{DQuat, DVec3};
 use physics::Pose;
+use physics::query::manifold;
 
 use crate::judge::cases::Case;
 use crate::judge::known::Known;
@@ -30,6 +32,8 @@ struct Exact {
     gap: f64,
     /// None where more than one is as good.
     normal: Option<DVec3>,
+    /// How many points span the contact.
+    span: RangeInclusive<usize>,
 }
 
 /// Where b stands: position [m] and a turn about x [rad].
@@ -49,6 +53,7 @@ fn meet(name: &str, a: Known, b: Known, pose_b: Pose, normal: DVec3) -> Exact {
         },
         gap: 0.0,
         normal: Some(normal),
+        span: 1..=1,
     }
 }
 
@@ -160,13 +165,6 @@ fn lines(g: f64) -> Vec<Exact> {
             X,
         ),
         meet(
-            "crossed cylinders",
-            CYLINDER,
-            CYLINDER,
-            at(1.0 + g, 0.0, 0.0, lying),
-            X,
-        ),
-        meet(
             "cylinder lying on box",
             BOX,
             CYLINDER,
@@ -228,6 +226,13 @@ fn points(g: f64) -> Vec<Exact> {
             Y,
         ),
         meet(
+            "crossed cylinders",
+            CYLINDER,
+            CYLINDER,
+            at(1.0 + g, 0.0, 0.0, FRAC_PI_2),
+            X,
+        ),
+        meet(
             "capsules end to end",
             CAPSULE,
             CAPSULE,
@@ -262,14 +267,19 @@ fn points(g: f64) -> Vec<Exact> {
 
 /// Faces, lines, rims and apexes that meet `gap` apart.
 fn exact_contacts(gap: f64) -> Vec<Exact> {
-    let all = faces(gap).into_iter().chain(lines(gap)).chain(points(gap));
-    all.map(|exact| Exact {
-        name: format!("{}, gap {gap:e}", exact.name),
-        gap,
-        ..exact
-    })
-    .chain([apex_on_apex(gap)])
-    .collect()
+    let span = |exacts: Vec<Exact>, span: RangeInclusive<usize>| {
+        exacts.into_iter().map(move |exact| Exact {
+            name: format!("{}, gap {gap:e}", exact.name),
+            gap,
+            span: span.clone(),
+            ..exact
+        })
+    };
+    span(faces(gap), 3..=4)
+        .chain(span(lines(gap), 2..=2))
+        .chain(span(points(gap), 1..=1))
+        .chain([apex_on_apex(gap)])
+        .collect()
 }
 
 /// Two cones apex to apex. Overlapping they have no single way out: sideways along any slant is shortest.
@@ -279,6 +289,8 @@ fn apex_on_apex(gap: f64) -> Exact {
         name: format!("apex on apex, gap {gap:e}"),
         gap: if gap < 0.0 { gap * slant } else { gap },
         normal: (gap > 0.0).then_some(Y),
+        // The way out along a slant makes the two slants a line of contact.
+        span: 1..=if gap < 0.0 { 2 } else { 1 },
         ..meet("", CONE, CONE, at(0.0, 2.0 + gap, 0.0, PI), Y)
     }
 }
@@ -369,6 +381,37 @@ fn one_ulp_does_not_turn_a_unique_normal() {
                     let right = off <= limit && (found.gap - exact.gap).abs() <= 1e-10;
                     wrong.unless(right, || {
                         format!("{} {pose_b:?}: {off:.1e} {found:?}", exact.name)
+                    });
+                }
+            }
+        }
+    }
+    wrong.end();
+}
+
+#[test]
+fn faces_lines_and_points_are_spanned_by_four_two_and_one() {
+    let mut wrong = Wrong::default();
+    for gap in GAPS {
+        for exact in exact_contacts(gap) {
+            for (case, _) in also_moved(&exact) {
+                let (a, b) = (case.a.shape(), case.b.shape());
+                let found = manifold((&a, &case.pose_a), (&b, &case.pose_b), &answer(&case));
+                let points = found.points();
+                wrong.unless(exact.span.contains(&points.len()), || {
+                    format!("{}: {} points", exact.name, points.len())
+                });
+                for point in points {
+                    let inside = |shape: &Known, pose: &Pose| {
+                        shape.outside(pose.rotation.conjugate() * (point.point - pose.position))
+                    };
+                    let off = inside(&case.a, &case.pose_a).max(inside(&case.b, &case.pose_b));
+                    // Half way between the surfaces, at a rim beside one of them where they overlap; and the
+                    // judge's way into a cone is up to 1.5 times the shortest.
+                    let half = 0.75 * exact.gap.abs() + 1e-9;
+                    let deep = (point.depth + exact.gap).abs() < 1e-9;
+                    wrong.unless(deep && off < half, || {
+                        format!("{}: {point:?}, off by {off:.1e}", exact.name)
                     });
                 }
             }
