@@ -7,6 +7,9 @@ use super::cores::{Circle, Core, Tip};
 /// Circles are numbered through both cores: a's from 0, b's from here on.
 pub(super) const OF_B: usize = 3;
 
+/// Axes that differ by less than this [rad] are parallel.
+const PARALLEL: f64 = 1e-10;
+
 /// Core a, and core b mirrored at its centre, whose centre lies at `offset` from a's.
 pub(super) struct Pair<A, B> {
     pub a: A,
@@ -68,15 +71,34 @@ impl<A: Core, B: Core> Pair<A, B> {
         }
     }
 
-    /// The support points along n, with those circles that the search is held to counted as below n.
+    /// The support points along n, on the given `sides` of those circles that the search is `held` to.
     #[inline(always)]
-    pub fn tips_held(&self, n: DVec3, held: u8) -> Tips {
+    pub fn tips_held(&self, n: DVec3, held: u8, sides: u8) -> Tips {
         let tips = self.tips(n);
-        if tips.sides() & held == 0 {
+        let wanted = tips.sides() & !held | sides & held;
+        if tips.sides() == wanted {
             tips
         } else {
-            self.tips_on(n, tips.sides() & !held)
+            self.tips_on(n, wanted)
         }
+    }
+
+    /// The circles that coincide with the circle `index`, as bits: of parallel edges all jumps happen at once.
+    #[inline(always)]
+    pub fn twins(&self, index: usize) -> u8 {
+        let circle = &self.circles[index];
+        let others = if index < OF_B {
+            OF_B..OF_B + B::CIRCLES
+        } else {
+            0..A::CIRCLES
+        };
+        others.fold(0, |bits, other| {
+            let twin = &self.circles[other];
+            let cosine = circle.axis.dot(twin.axis);
+            let parallel = circle.axis.cross(twin.axis).length_squared() < PARALLEL * PARALLEL;
+            let level = (circle.height - twin.height * cosine).abs() < PARALLEL;
+            bits | u8::from(parallel && level) << other
+        })
     }
 
     /// `D`, from a's support point to b's.

@@ -73,6 +73,8 @@ pub(super) struct Search<'p, A, B> {
     tips: Tips,
     s: f64,
     state: State,
+    /// Circles whose sides the search holds to, as bits: its own and those that coincide with them.
+    held: u8,
     /// Kink that was left just now, and the direction away from it.
     left: Option<(usize, DVec3)>,
     /// How much worse than the slope along it a kink must be to be left before the search along it has ended.
@@ -80,6 +82,19 @@ pub(super) struct Search<'p, A, B> {
     iterations: u32,
     idle: u32,
     last: f64,
+}
+
+/// How a search ended.
+#[derive(Clone, Copy, PartialEq)]
+enum Ending {
+    /// The closest points line up as its state says.
+    LinedUp,
+    /// They do within the faces under n, although no step gained anything any more.
+    OnFaces,
+    /// The gap is as large as was asked for.
+    Enough,
+    /// The iterations or the gains ended first.
+    Unfinished,
 }
 
 /// How a way ended.
@@ -91,8 +106,8 @@ enum End {
         tips: Tips,
         whole: bool,
     },
-    /// On a kink that it must not cross.
-    Kink { index: usize, n: DVec3 },
+    /// On a kink that it must not cross, coming from these sides of all others.
+    Kink { index: usize, n: DVec3, sides: u8 },
 }
 
 /// What a look at the kinks on a way tells.
@@ -106,6 +121,7 @@ enum Look {
     Kink {
         index: usize,
         n: DVec3,
+        sides: u8,
     },
 }
 
@@ -120,24 +136,22 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
     #[inline(always)]
     pub fn run(pair: &'p Pair<A, B>, start: DVec3, state: State, goal: Goal) -> Summit {
         let mut search = Search::new(pair, start, state, goal);
-        let converged = search.climb();
-        search.summit(converged)
+        let ending = search.climb();
+        search.summit(ending)
     }
 
     #[inline(always)]
     fn new(pair: &'p Pair<A, B>, n: DVec3, state: State, goal: Goal) -> Self {
         let natural = pair.tips(n);
-        let mut state = state;
-        let mut tips = natural;
-        if natural.sides() & state.held() != 0 {
-            tips = pair.tips_on(n, natural.sides() & !state.held());
-        }
-        let mut s = n.dot(pair.between(&tips));
-        let proven = n.dot(pair.between(&natural));
-        if s - proven > 10.0 * ROUNDING * pair.size {
-            // Circles that almost touch cross in no exact normal.
-            (state, tips, s) = (State::Free, natural, proven);
-        }
+        let below = pair.tips_held(n, state.held(), 0);
+        let (s, proven) = (n.dot(pair.between(&below)), n.dot(pair.between(&natural)));
+        // Circles that almost touch cross in no exact normal.
+        let exact = s - proven <= 10.0 * ROUNDING * pair.size;
+        let (state, tips, s) = if exact {
+            (state, below, s)
+        } else {
+            (State::Free, natural, proven)
+        };
         let patience = if matches!(state, State::Circle(_)) {
             8.0
         } else {
@@ -150,6 +164,7 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
             tips,
             s,
             state,
+            held: held(pair, state),
             left: None,
             patience,
             iterations: 0,
@@ -158,15 +173,19 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
         }
     }
 
-    /// Climbs until the closest points line up (true) or no more can be done (false).
+    /// Climbs until the closest points line up or no more can be done.
     #[inline(always)]
-    fn climb(&mut self) -> bool {
+    fn climb(&mut self) -> Ending {
         loop {
             if self.s > self.goal.enough {
-                return true;
+                return Ending::Enough;
             }
             if self.iterations >= self.goal.cap || self.is_idle() {
-                return self.lines_up();
+                return if self.lines_up() {
+                    Ending::OnFaces
+                } else {
+                    Ending::Unfinished
+                };
             }
             self.iterations += 1;
             let over = match self.state {
@@ -180,7 +199,7 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
                 State::Corner(i, j) => self.step_corner(i, j),
             };
             if over {
-                return true;
+                return Ending::LinedUp;
             }
         }
     }
@@ -357,9 +376,9 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
             step,
             left,
         };
-        match self.walk(&path, 0, rise, 1.0) {
-            End::Kink { index, n } => {
-                self.hold(State::Circle(index), n);
+        match self.walk(&path, rise, 1.0) {
+            End::Kink { index, n, sides } => {
+                self.hold(State::Circle(index), n, sides);
                 false
             }
             End::Open { x, n, tips, whole } => {
@@ -375,11 +394,12 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
 
     /// Puts the search on a kink.
     #[inline(always)]
-    fn hold(&mut self, state: State, n: DVec3) {
-        self.tips = self.pair.tips_held(n, state.held());
+    fn hold(&mut self, state: State, n: DVec3, sides: u8) {
+        self.tips = self.pair.tips_on(n, sides & !state.held());
         self.n = n;
         self.s = n.dot(self.pair.between(&self.tips));
         self.state = state;
+        self.held = held(self.pair, state);
     }
 
     /// Moves to a normal unless s is lower there.
@@ -427,7 +447,6 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
         }
         if excess != 0.0 && (settled || excess.abs() > self.patience * along.abs()) {
             self.leave(index, excess > 0.0, upward);
-            self.state = State::Free;
             return false;
         }
         // Where s > 0 it is concave, however little it bends: nearly touching corners.
@@ -443,9 +462,13 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
             out,
             ahead: ahead * 1.0_f64.copysign(stride),
         };
-        match self.walk(&path, 1 << index, along.abs(), length) {
-            End::Kink { index: other, n } => {
-                self.hold(State::Corner(index, other), n);
+        match self.walk(&path, along.abs(), length) {
+            End::Kink {
+                index: other,
+                n,
+                sides,
+            } => {
+                self.hold(State::Corner(index, other), n, sides);
                 false
             }
             End::Open { x, n, tips, whole } => {
@@ -481,6 +504,8 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
             self.tips = self.pair.tips_on(self.n, self.tips.sides() | 1 << index);
         }
         self.left = Some((index, if above { upward } else { -upward }));
+        self.state = State::Free;
+        self.held = 0;
     }
 
     /// Where two kinks cross the closest points are a mixture of two jumps, with one closed form for each share.
@@ -504,6 +529,7 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
             self.tips = self.pair.tips_on(self.n, self.tips.sides() | 1 << leave);
         }
         self.state = State::Circle(stay);
+        self.held = held(self.pair, self.state);
         false
     }
 
@@ -521,27 +547,27 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
         )
     }
 
-    /// Follows a way up to `end`, held to the circles `held`; `rise` is the slope of s at its start.
+    /// Follows a way up to `end`; `rise` is the slope of s at its start.
     #[inline(always)]
-    fn walk<P: Path>(&self, path: &P, held: u8, rise: f64, end: f64) -> End {
-        let pair = self.pair;
-        let sides = self.tips.sides() & !held;
+    fn walk<P: Path>(&self, path: &P, rise: f64, end: f64) -> End {
+        let (pair, held) = (self.pair, self.held);
+        let sides = self.tips.sides();
         let mut x = end;
         let mut whole = true;
         let mut n = path.at(x);
-        let mut tips = pair.tips_held(n, held);
+        let mut tips = pair.tips_held(n, held, sides);
         for _ in 0..4 {
             if tips.sides() == sides {
                 break;
             }
-            match self.look(path, held, rise, x, sides ^ tips.sides()) {
+            match self.look(path, rise, x, sides ^ tips.sides()) {
                 Look::Clear => break,
-                Look::Kink { index, n } => return End::Kink { index, n },
+                Look::Kink { index, n, sides } => return End::Kink { index, n, sides },
                 Look::Shorten { x: shorter, again } => {
                     x = shorter;
                     whole = false;
                     n = path.at(x);
-                    tips = pair.tips_held(n, held);
+                    tips = pair.tips_held(n, held, sides);
                     if !again {
                         break;
                     }
@@ -555,15 +581,15 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
             x *= 0.35;
             whole = false;
             n = path.at(x);
-            tips = pair.tips_held(n, held);
+            tips = pair.tips_held(n, held, sides);
         }
         End::Open { x, n, tips, whole }
     }
 
     /// Looks at the kinks (`crossed`, as bits) between the start of the way and `end`, in their order.
     #[inline(never)]
-    fn look<P: Path>(&self, path: &P, held: u8, rise: f64, end: f64, crossed: u8) -> Look {
-        let pair = self.pair;
+    fn look<P: Path>(&self, path: &P, rise: f64, end: f64, crossed: u8) -> Look {
+        let (pair, held) = (self.pair, self.held);
         let mut list = [(0.0, 0usize, DVec3::ZERO); 2 * OF_B];
         let mut count = 0;
         for index in (0..2 * OF_B).filter(|i| crossed >> i & 1 == 1) {
@@ -578,7 +604,7 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
             }
         }
         let list = &list[..count];
-        let mut sides = self.tips.sides() & !held;
+        let mut sides = self.tips.sides();
         let (mut from, mut slope) = (0.0, rise);
         for &(x, index, n) in list {
             let bit = 1u8 << index;
@@ -586,7 +612,7 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
                 // A small circle may have been crossed twice in between: then the way there comes first.
                 let ties = list.iter().filter(|k| (k.0 - x).abs() < 1e-12);
                 let ties = ties.fold(bit, |bits, k| bits | 1 << k.1);
-                let seen = pair.tips_held(n, held).sides();
+                let seen = pair.tips_held(n, held, sides).sides();
                 if (seen ^ sides) & !ties != 0 && x < end {
                     return Look::Shorten { x, again: true };
                 }
@@ -607,7 +633,7 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
             let circle = &pair.circles[index];
             let after = before - circle.jump * circle.axis.dot(heading).abs() / circle.radius;
             if after <= 0.0 {
-                return self.stop_at(index, n, held | bit);
+                return self.stop_at(index, n, sides);
             }
             (from, slope) = (x, after);
         }
@@ -616,18 +642,19 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
 
     /// The kink `index` ends the way, unless rounding puts it below where the way began.
     #[inline(always)]
-    fn stop_at(&self, index: usize, n: DVec3, held: u8) -> Look {
-        let circle = &self.pair.circles[index];
-        let n = if held.count_ones() == 1 {
-            circle.nearest(n).unwrap_or(n)
+    fn stop_at(&self, index: usize, n: DVec3, sides: u8) -> Look {
+        let pair = self.pair;
+        let on_one = self.held == 0;
+        let n = if on_one {
+            pair.circles[index].nearest(n).unwrap_or(n)
         } else {
             n
         };
-        let s = n.dot(self.pair.between(&self.pair.tips_held(n, held)));
+        let s = n.dot(pair.between(&pair.tips_on(n, sides)));
         // Circles that almost touch cross in no exact normal: what is held there would not be what s is.
-        let exact = s - self.pair.gap(n) <= 10.0 * ROUNDING * self.pair.size;
-        if exact && s >= self.s - 10.0 * ROUNDING * self.pair.size {
-            Look::Kink { index, n }
+        let exact = s - pair.gap(n) <= 10.0 * ROUNDING * pair.size;
+        if exact && s >= self.s - 10.0 * ROUNDING * pair.size {
+            Look::Kink { index, n, sides }
         } else {
             Look::Clear
         }
@@ -635,7 +662,31 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
 
     /// The answer where the search stands.
     #[inline(always)]
-    fn summit(self, converged: bool) -> Summit {
+    fn summit(self, ending: Ending) -> Summit {
+        // On a kink the search holds to one side of it; what is proven is s itself.
+        let natural = self.held == 0 && ending != Ending::Unfinished;
+        let s = if natural {
+            self.s
+        } else {
+            self.s.min(self.pair.gap(self.n))
+        };
+        let faces = ending == Ending::OnFaces || matches!(self.state, State::Disc(_));
+        Summit {
+            n: self.n,
+            s,
+            points: if faces {
+                self.pair.line_up(self.n)
+            } else {
+                self.points()
+            },
+            iterations: self.iterations,
+            converged: ending != Ending::Unfinished,
+        }
+    }
+
+    /// The support points, on kinks the points of their jumps that line up best.
+    #[inline(always)]
+    fn points(&self) -> (DVec3, DVec3) {
         let (mut a, mut b) = (self.tips.a.point, self.tips.b.point);
         let mut add = |index: usize, share: f64| {
             let moved = self.jump(index) * share.clamp(0.0, 1.0);
@@ -647,7 +698,7 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
         };
         let d = self.pair.between(&self.tips);
         match self.state {
-            State::Free => {}
+            State::Free | State::Disc(_) => {}
             State::Circle(i) => {
                 let jump = self.jump(i);
                 add(i, jump.dot(d) / jump.length_squared());
@@ -657,22 +708,18 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
                 add(i, share_i);
                 add(j, share_j);
             }
-            State::Disc(_) => (a, b) = self.pair.line_up(self.n),
         }
-        // On a kink the search holds to one side of it; what is proven is s itself.
-        let free = self.state.held() == 0 && converged;
-        let s = if free {
-            self.s
-        } else {
-            self.s.min(self.pair.gap(self.n))
-        };
-        Summit {
-            n: self.n,
-            s,
-            points: (a, b),
-            iterations: self.iterations,
-            converged,
-        }
+        (a, b)
+    }
+}
+
+/// The circles whose sides a search in this state holds to.
+#[inline(always)]
+fn held<A: Core, B: Core>(pair: &Pair<A, B>, state: State) -> u8 {
+    match state {
+        State::Free | State::Disc(_) => 0,
+        State::Circle(i) => state.held() | pair.twins(i),
+        State::Corner(i, j) => state.held() | pair.twins(i) | pair.twins(j),
     }
 }
 

@@ -6,7 +6,7 @@ use super::cores::{Core, CuboidCore, EllipsoidCore, PointCore, RevolutionCore, T
 use super::pair::Pair;
 use super::search::Goal;
 use super::starts::{self, Found};
-use super::{Limits, Placed, Separation, bounds, bundle};
+use super::{Limits, Placed, Separation, bounds, bundle, gap_along};
 use crate::shape::Kind;
 
 /// Order of the families: a pair is searched with the lower one first, so that each has one search.
@@ -26,6 +26,16 @@ fn rounding(kind: &Kind) -> f64 {
     match kind {
         Kind::Sphere { radius } | Kind::Capsule { radius, .. } => *radius,
         _ => 0.0,
+    }
+}
+
+/// Whether the square that the search sees an ellipsoid by loses more of its short axis than a gap may.
+fn is_slender(kind: &Kind) -> bool {
+    match kind {
+        Kind::Ellipsoid { semi } | Kind::TruncatedEllipsoid { semi, .. } => {
+            semi.max_element() > 100.0 * semi.min_element()
+        }
+        _ => false,
     }
 }
 
@@ -115,7 +125,10 @@ impl Task<'_> {
         let (n, (core_a, core_b)) = (summit.n, summit.points);
         let point_a = self.a.position + core_a + n * radii.0;
         let point_b = self.b.position - core_b - n * radii.1;
-        let gap = summit.s - radii.0 - radii.1;
+        let mut gap = summit.s - radii.0 - radii.1;
+        if is_slender(&self.a.shape.kind) || is_slender(&self.b.shape.kind) {
+            gap = gap_along(self.a, self.b, n);
+        }
         let upper = if summit.s > 0.0 {
             let distance = (pair.offset - core_a - core_b).length();
             Some((distance - radii.0 - radii.1).max(gap))

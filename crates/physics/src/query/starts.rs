@@ -21,12 +21,32 @@ pub(super) struct Found {
     pub capped: bool,
 }
 
-/// Searches from a known normal only.
+/// Cosine of the angle from the start within which a maximum of s is taken for the one that was meant: 0.1 rad.
+const STAYED: f64 = 0.995;
+/// Overlap so shallow that any maximum of s will do, in units of the pair's size.
+const SHALLOW: f64 = 1e-3;
+
+/// Searches from a known normal, and as without one if that leads nowhere.
 #[inline]
 pub(super) fn from_known<A: Core, B: Core>(pair: &Pair<A, B>, start: DVec3, goal: Goal) -> Found {
     let summit = Search::run(pair, start, State::Free, goal);
-    let capped = !summit.converged;
-    Found { summit, capped }
+    let stayed = summit.s > -SHALLOW * pair.size || summit.n.dot(start) > STAYED;
+    if (summit.converged && stayed) || summit.iterations >= goal.cap {
+        let capped = !summit.converged || !stayed;
+        return Found { summit, capped };
+    }
+    let cap = goal.cap - summit.iterations;
+    let mut found = from_nothing(pair, Goal { cap, ..goal });
+    found.summit.iterations += summit.iterations;
+    if summit.s > found.summit.s {
+        let iterations = found.summit.iterations;
+        found.summit = Summit {
+            iterations,
+            ..summit
+        };
+        found.capped |= !summit.converged;
+    }
+    found
 }
 
 /// Searches without a known normal: from the line of centres, weighed with the cores' extents, and if they overlap
@@ -60,6 +80,19 @@ fn first_normal<A: Core, B: Core>(pair: &Pair<A, B>) -> DVec3 {
     } else {
         DVec3::Y
     }
+}
+
+/// The direction in which both cores together are thinnest: needles and plates part that way.
+///
+/// The eigenvector of the smallest eigenvalue of the summed matrices, by three steps of inverse iteration.
+fn thinnest<A: Core, B: Core>(pair: &Pair<A, B>) -> Option<DVec3> {
+    let sum = pair.a.extents().plus(&pair.b.extents());
+    let shift = 1e-9 * sum.trace();
+    let mut n = DVec3::new(0.48, 0.6, 0.64);
+    for _ in 0..3 {
+        n = sum.solve_direction(shift, n).try_normalize()?;
+    }
+    Some(n)
 }
 
 /// Normals to search from, each in its own state.
@@ -108,6 +141,10 @@ impl Candidates {
             }
         }
         if let Some(n) = pair.offset.try_normalize() {
+            self.put(pair, n, State::Free);
+        }
+        if let Some(n) = thinnest(pair) {
+            let n = if n.dot(pair.offset) >= 0.0 { n } else { -n };
             self.put(pair, n, State::Free);
         }
         if let (Some(a), Some(b)) = (ends_a[1].or(ends_a[0]), ends_b[1].or(ends_b[0])) {

@@ -11,7 +11,7 @@ pub(in crate::query) struct RevolutionCore<'a> {
 }
 
 /// How far n leans from the axis where rounding along it starts to tell.
-const NEAR_AXIS: f64 = 1e-3;
+const NEAR_AXIS: f64 = 0.1;
 
 impl RevolutionCore<'_> {
     /// n along the axis, n across it and the length of that.
