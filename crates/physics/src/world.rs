@@ -101,6 +101,8 @@ pub struct World {
     pub(crate) bodies: Vec<Body>,
     /// Per slot: how often it was reused, and whether a body lives in it.
     generations: Vec<(u32, bool)>,
+    /// Slots in which no body lives.
+    vacant: usize,
     pub(crate) targets: Vec<Option<Pose>>,
     pub(crate) broad: Broad,
     pub(crate) pairs: Pairs,
@@ -139,6 +141,7 @@ impl World {
             settings,
             bodies: Vec::new(),
             generations: Vec::new(),
+            vacant: 0,
             targets: Vec::new(),
             broad: Broad::default(),
             pairs: Pairs::default(),
@@ -161,8 +164,14 @@ impl World {
         let valid = def.motion == Motion::Fixed || def.mass.is_valid();
         let mut body = Body::new(def);
         body.frozen = !valid || !body.is_finite();
-        let slot = match self.generations.iter().position(|(_, live)| !live) {
+        let vacant = if self.vacant > 0 {
+            self.generations.iter().position(|(_, live)| !live)
+        } else {
+            None
+        };
+        let slot = match vacant {
             Some(slot) => {
+                self.vacant -= 1;
                 self.generations[slot].1 = true;
                 body.listed = self.bodies[slot].listed;
                 self.bodies[slot] = body;
@@ -192,6 +201,7 @@ impl World {
         let slot = self.slot(id);
         self.disturb(slot);
         self.generations[slot] = (id.generation + 1, false);
+        self.vacant += 1;
         let body = &mut self.bodies[slot];
         body.collides = false;
         body.motion = Motion::Fixed;
@@ -334,6 +344,8 @@ impl World {
     pub(crate) fn renew(&mut self, slot: usize) {
         let body = &mut self.bodies[slot];
         body.fresh = true;
+        // Nothing refers to its way any more: from zero on, the same calls give the same bits again.
+        body.path = 0.0;
         body.box_until = f64::NEG_INFINITY;
         self.pairs.forget(slot);
         self.rouse(slot);

@@ -109,7 +109,6 @@ impl World {
         }
         body.position = body.last_finite.position;
         body.rotation = body.last_finite.rotation;
-        body.path = 0.0;
         body.halt();
         body.frozen = true;
         self.renew(slot);

@@ -10,6 +10,8 @@ use super::touch::Touch;
 
 /// No entry.
 const NONE: u32 = u32::MAX;
+/// Sizes of lists of parts: powers of two up to 256 x 256.
+const KINDS: usize = 17;
 
 /// Two parts of two bodies.
 #[derive(Clone, Copy, Debug)]
@@ -21,8 +23,16 @@ pub(crate) struct PartPair {
     seen: u32,
     /// Normal of the last search; zero before the first.
     pub normal: DVec3,
-    /// Gap plus the ways of both bodies when it was measured [m]: they are apart until their ways have used it up.
-    pub clearance: f64,
+}
+
+/// All pairs of parts of two bodies.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Parts {
+    list: Vec<PartPair>,
+    /// Of each its gap plus the ways of both bodies when it was measured [m]: apart until the ways have used it up.
+    ///
+    /// In a list of its own: most looks read all of these and one or two of the others.
+    pub clearances: Vec<f64>,
 }
 
 /// Two bodies, `a < b`.
@@ -30,9 +40,10 @@ pub(crate) struct PartPair {
 pub(crate) struct Pair {
     pub a: u32,
     pub b: u32,
+    /// Least clearance of their parts [m].
     pub clearance: f64,
     /// Pairs of parts; empty until the bodies come within reach of each other for the first time.
-    pub parts: Vec<PartPair>,
+    pub parts: Parts,
 }
 
 /// Two parts of a pair of bodies, and where what is known of them stands.
@@ -42,6 +53,13 @@ pub(crate) struct Key {
     pub b: u32,
     pub pair: u32,
     pub part: u32,
+}
+
+impl Parts {
+    /// Whether the bodies were never within reach of each other.
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
 }
 
 impl Key {
@@ -100,8 +118,8 @@ pub(crate) struct Pairs {
     formed: u64,
     seen: Vec<Seen>,
     free_seen: Vec<u32>,
-    /// Emptied lists of parts, for the next pairs.
-    spare: Vec<Vec<PartPair>>,
+    /// Emptied lists of parts, for the next pairs; each kind has room for twice as many as the kind before.
+    spare: [Vec<Parts>; KINDS],
     pub queue: Queue,
 }
 
@@ -122,11 +140,11 @@ impl Pairs {
     }
 
     pub fn part(&self, key: Key) -> &PartPair {
-        &self.get(key.pair).parts[key.part as usize]
+        &self.get(key.pair).parts.list[key.part as usize]
     }
 
     pub fn part_mut(&mut self, key: Key) -> &mut PartPair {
-        &mut self.get_mut(key.pair).parts[key.part as usize]
+        &mut self.get_mut(key.pair).parts.list[key.part as usize]
     }
 
     /// Neighbours of a body, by their number.
@@ -157,7 +175,7 @@ impl Pairs {
             a: a as u32,
             b: b as u32,
             clearance: f64::NEG_INFINITY,
-            parts: self.spare.pop().unwrap_or_default(),
+            parts: Parts::default(),
         };
         let pair = match self.free.pop() {
             Some(pair) => {
@@ -188,14 +206,18 @@ impl Pairs {
             if let Ok(place) = self.place(slot, other) {
                 self.links[slot].near.remove(place);
             }
-            if parts.iter().any(|part| part.touching) {
+            if parts.list.iter().any(|part| part.touching) {
                 self.links[slot].contacts.retain(|c| c.key.pair != pair);
             }
         }
-        let kept = parts.iter().map(|part| part.seen).filter(|s| *s != NONE);
-        self.free_seen.extend(kept);
-        parts.clear();
-        self.spare.push(parts);
+        let kept = parts.list.iter().map(|part| part.seen);
+        self.free_seen.extend(kept.filter(|seen| *seen != NONE));
+        if !parts.list.is_empty() {
+            let kind = kind(parts.list.len());
+            parts.list.clear();
+            parts.clearances.clear();
+            self.spare[kind].push(parts);
+        }
         self.free.push(pair);
     }
 
@@ -208,16 +230,20 @@ impl Pairs {
 
     /// Lists the pairs of parts of two bodies that come within reach for the first time, `ways` [m] being theirs.
     pub fn list_parts(&mut self, pair: u32, (count_a, count_b): (usize, usize), ways: f64) {
+        let kind = kind(count_a * count_b);
         let parts = &mut self.list[pair as usize].parts;
-        parts.reserve_exact(count_a * count_b);
+        *parts = self.spare[kind].pop().unwrap_or_default();
+        parts.list.reserve_exact(1 << kind);
+        parts.clearances.reserve_exact(1 << kind);
+        let unknown = ways + f64::MIN_POSITIVE - 1.0;
+        parts.clearances.resize(count_a * count_b, unknown);
         for part_a in 0..count_a as u8 {
-            parts.extend((0..count_b as u8).map(|part_b| PartPair {
+            parts.list.extend((0..count_b as u8).map(|part_b| PartPair {
                 part_a,
                 part_b,
                 touching: false,
                 seen: NONE,
                 normal: DVec3::ZERO,
-                clearance: ways + f64::MIN_POSITIVE - 1.0,
             }));
         }
     }
@@ -283,4 +309,9 @@ impl Pairs {
         let near = &self.links[slot].near;
         near.binary_search_by_key(&(other as u32), |n| n.other)
     }
+}
+
+/// The kind of list that has room for so many.
+fn kind(count: usize) -> usize {
+    count.next_power_of_two().trailing_zeros() as usize
 }

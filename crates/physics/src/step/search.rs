@@ -57,28 +57,25 @@ impl World {
         let (ways, reach) = (body_a.path + body_b.path, body_a.reach + body_b.reach);
         let mut first: Option<(f64, Key)> = None;
         let mut clearance = f64::INFINITY;
-        for part in 0..self.pairs.get(pair).parts.len() {
+        for part in 0..self.pairs.get(pair).parts.clearances.len() {
+            let known = self.pairs.get(pair).parts.clearances[part];
+            if known - ways > reach {
+                clearance = clearance.min(known);
+                continue;
+            }
             let key = Key {
                 a: a as u32,
                 b: b as u32,
                 pair,
                 part: part as u32,
             };
-            let known = self.pairs.part(key);
-            if known.clearance - ways > reach {
-                clearance = clearance.min(known.clearance);
-                continue;
-            }
             let found = Approach::search(self, key, (t0, dt), &starts, &ends);
             self.effort.looks += u64::from(found.looks);
             let entry = self.pairs.part_mut(key);
             entry.normal = found.normal;
-            entry.clearance = if entry.touching {
-                ways
-            } else {
-                found.gap + ways
-            };
-            clearance = clearance.min(entry.clearance);
+            let gap = if entry.touching { 0.0 } else { found.gap };
+            self.pairs.get_mut(pair).parts.clearances[part] = gap + ways;
+            clearance = clearance.min(gap + ways);
             if let Some(time) = found.time
                 && first.is_none_or(|f| time < f.0)
             {

@@ -134,6 +134,10 @@ pub fn spots() -> Vec<DVec3> {
 
 /// Lane, gutters, kickbacks, pit and cushion of fixed boxes.
 pub fn add_building(world: &mut World, m: Material) -> Vec<BodyId> {
+    add_building_at(world, m, DVec3::ZERO)
+}
+
+fn add_building_at(world: &mut World, m: Material, at: DVec3) -> Vec<BodyId> {
     let v = DVec3::new;
     let boxes = [
         (v(-0.52705, -0.3, -19.156), v(0.52705, 0.0, 0.0)),
@@ -151,7 +155,7 @@ pub fn add_building(world: &mut World, m: Material) -> Vec<BodyId> {
     ];
     boxes
         .iter()
-        .map(|(low, high)| world.add(block(m, *low, *high)))
+        .map(|(low, high)| world.add(block(m, *low + at, *high + at)))
         .collect()
 }
 
@@ -164,6 +168,22 @@ pub fn alley(settings: Settings, pins: &Arc<Compound>, m: Material) -> (World, V
         .map(|s| world.add(pin(pins, m, *s)))
         .collect();
     (world, ids)
+}
+
+/// Distance from the middle of one of many lanes to that of the next [m].
+pub const LANE_SPACING: f64 = 5.0;
+
+/// So many alleys side by side, each with a rack of pins.
+pub fn alleys(lanes: u32, settings: Settings, pins: &Arc<Compound>, m: Material) -> World {
+    let mut world = World::new(settings).expect("fixture sizes are positive");
+    for lane in 0..lanes {
+        let at = DVec3::X * (LANE_SPACING * f64::from(lane));
+        add_building_at(&mut world, m, at);
+        for spot in spots() {
+            world.add(pin(pins, m, spot + at));
+        }
+    }
+    world
 }
 
 /// Adds a rolling ball that starts `back` metres before the head pin, `x` beside the middle.
