@@ -17,7 +17,6 @@ pub(super) struct Pair<A, B> {
     pub offset: DVec3,
     /// Length that tolerances are measured against [m].
     pub size: f64,
-    pub circles: [Circle; 2 * OF_B],
 }
 
 /// The support points of both cores along one normal.
@@ -38,20 +37,17 @@ impl Tips {
 impl<A: Core, B: Core> Pair<A, B> {
     #[inline(always)]
     pub fn new(a: A, b: B, offset: DVec3) -> Pair<A, B> {
-        let mut circles = [Circle::NONE; 2 * OF_B];
-        for (i, circle) in circles[..A::CIRCLES].iter_mut().enumerate() {
-            *circle = a.circle(i);
-        }
-        for (i, circle) in circles[OF_B..OF_B + B::CIRCLES].iter_mut().enumerate() {
-            *circle = b.circle(i);
-        }
         let size = a.size() + b.size();
-        Pair {
-            a,
-            b,
-            offset,
-            size,
-            circles,
+        Pair { a, b, offset, size }
+    }
+
+    /// The circle with this number.
+    #[inline(always)]
+    pub fn circle(&self, index: usize) -> Circle {
+        if index < OF_B {
+            self.a.circle(index)
+        } else {
+            self.b.circle(index - OF_B)
         }
     }
 
@@ -86,14 +82,14 @@ impl<A: Core, B: Core> Pair<A, B> {
     /// The circles that coincide with the circle `index`, as bits: of parallel edges all jumps happen at once.
     #[inline(always)]
     pub fn twins(&self, index: usize) -> u8 {
-        let circle = &self.circles[index];
+        let circle = self.circle(index);
         let others = if index < OF_B {
             OF_B..OF_B + B::CIRCLES
         } else {
             0..A::CIRCLES
         };
         others.fold(0, |bits, other| {
-            let twin = &self.circles[other];
+            let twin = self.circle(other);
             let cosine = circle.axis.dot(twin.axis);
             let parallel = circle.axis.cross(twin.axis).length_squared() < PARALLEL * PARALLEL;
             let level = (circle.height - twin.height * cosine).abs() < PARALLEL;

@@ -226,7 +226,7 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
     /// Whether an offset across n of this squared length leaves |D| - s narrow.
     #[inline(always)]
     fn is_narrow(&self, across_squared: f64) -> bool {
-        let narrow = NARROW * self.pair.size;
+        let narrow = self.goal.tolerance.max(NARROW * self.pair.size);
         self.s <= 0.0 || across_squared <= narrow * narrow
     }
 
@@ -385,9 +385,11 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
                 let small = newton && whole && step.length_squared() * x * x < 1e-9;
                 let last = small && tips.sides() == self.tips.sides();
                 self.accept(n, tips);
+                if !last {
+                    return false;
+                }
                 let d = self.pair.between(&self.tips);
-                let across = (d - self.n * self.s).length_squared();
-                last && across < (NARROW * self.pair.size).powi(2)
+                self.is_narrow((d - self.n * self.s).length_squared())
             }
         }
     }
@@ -415,11 +417,11 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
     #[inline(always)]
     fn step_along(&mut self, index: usize) -> bool {
         let pair = self.pair;
-        let circle = pair.circles[index];
+        let circle = pair.circle(index);
         let (c, radius, jump) = (circle.height, circle.radius, circle.jump);
         // Without what rounding has put along the axis: a flat cone's small circle would magnify it at every step.
         let out = self.n - circle.axis * self.n.dot(circle.axis);
-        let out = out * (1.0 / out.length());
+        let out = out * (1.0 / radius);
         let ahead = circle.axis.cross(out);
         let upward = circle.axis * radius - out * c;
         let d = pair.between(&self.tips);
@@ -487,13 +489,13 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
         let jump = self.jump(index);
         let share = (jump.dot(d) / jump.length_squared()).clamp(0.0, 1.0);
         let across = d - jump * share - self.n * self.s;
-        across.length_squared() < (NARROW * self.pair.size).powi(2)
+        self.is_narrow(across.length_squared())
     }
 
     /// The jump of the support point across the circle `index`, from below to above, at n.
     #[inline(always)]
     fn jump(&self, index: usize) -> DVec3 {
-        let circle = &self.pair.circles[index];
+        let circle = &self.pair.circle(index);
         (circle.axis - self.n * circle.height) * (circle.jump / circle.radius)
     }
 
@@ -513,7 +515,7 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
     fn step_corner(&mut self, i: usize, j: usize) -> bool {
         let d = self.pair.between(&self.tips);
         let (share_i, share_j) = self.shares(i, j, d);
-        let (jump_i, jump_j) = (self.pair.circles[i].jump, self.pair.circles[j].jump);
+        let (jump_i, jump_j) = (self.pair.circle(i).jump, self.pair.circle(j).jump);
         let excess = |share: f64, jump: f64| (-share).max(share - 1.0) * jump;
         let (over_i, over_j) = (excess(share_i, jump_i), excess(share_j, jump_j));
         let tolerance = LINED_UP * self.pair.size;
@@ -537,8 +539,8 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
     #[inline(always)]
     fn shares(&self, i: usize, j: usize, d: DVec3) -> (f64, f64) {
         let (across_i, across_j) = (
-            self.n.cross(self.pair.circles[i].axis),
-            self.n.cross(self.pair.circles[j].axis),
+            self.n.cross(self.pair.circle(i).axis),
+            self.n.cross(self.pair.circle(j).axis),
         );
         let (jump_i, jump_j) = (self.jump(i), self.jump(j));
         (
@@ -593,7 +595,7 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
         let mut list = [(0.0, 0usize, DVec3::ZERO); 2 * OF_B];
         let mut count = 0;
         for index in (0..2 * OF_B).filter(|i| crossed >> i & 1 == 1) {
-            if let Some((x, n)) = path.meets(&pair.circles[index], index, end) {
+            if let Some((x, n)) = path.meets(&pair.circle(index), index, end) {
                 let mut at = count;
                 while at > 0 && list[at - 1].0 > x {
                     list[at] = list[at - 1];
@@ -630,7 +632,7 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
                 return Look::Shorten { x, again: false };
             }
             sides ^= bit;
-            let circle = &pair.circles[index];
+            let circle = &pair.circle(index);
             let after = before - circle.jump * circle.axis.dot(heading).abs() / circle.radius;
             if after <= 0.0 {
                 return self.stop_at(index, n, sides);
@@ -646,7 +648,7 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
         let pair = self.pair;
         let on_one = self.held == 0;
         let n = if on_one {
-            pair.circles[index].nearest(n).unwrap_or(n)
+            pair.circle(index).nearest(n).unwrap_or(n)
         } else {
             n
         };
@@ -670,7 +672,9 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
         } else {
             self.s.min(self.pair.gap(self.n))
         };
-        let faces = ending == Ending::OnFaces || matches!(self.state, State::Disc(_));
+        // Where several jumps coincide their shares are not told apart by one.
+        let twins = self.held != self.state.held();
+        let faces = ending == Ending::OnFaces || twins || matches!(self.state, State::Disc(_));
         Summit {
             n: self.n,
             s,

@@ -125,7 +125,7 @@ impl Candidates {
             }
         }
         for i in (0..2 * OF_B).filter(|i| Pair::<A, B>::has_circle(*i)) {
-            let circle = &pair.circles[i];
+            let circle = &pair.circle(i);
             if A::CURVED || B::CURVED {
                 let side = || circle.axis * circle.height + basis(circle.axis).0 * circle.radius;
                 let n = circle.nearest(pair.offset).unwrap_or_else(side);
@@ -156,7 +156,7 @@ impl Candidates {
     }
 
     fn put_crossings<A: Core, B: Core>(&mut self, pair: &Pair<A, B>, i: usize, j: usize) {
-        let (one, two) = (&pair.circles[i], &pair.circles[j]);
+        let (one, two) = (&pair.circle(i), &pair.circle(j));
         let Some((p, q)) = crossings(one, two) else {
             return;
         };

@@ -152,6 +152,37 @@ fn capsules_are_segments_with_a_radius() {
 }
 
 #[test]
+fn boxes_with_parallel_axes() {
+    let mut wrong = Wrong::default();
+    let mut random = Random(43);
+    for _ in 0..400 {
+        let mut half = || {
+            DVec3::new(
+                between(&mut random, 0.2, 1.0),
+                between(&mut random, 0.2, 1.0),
+                between(&mut random, 0.2, 1.0),
+            )
+        };
+        let (a, b) = (half(), half());
+        let d = direction(&mut random) * between(&mut random, 0.0, 3.0);
+        let turn = rotation(&mut random);
+        let origin = direction(&mut random);
+        let case = Case {
+            a: Known::Cuboid(a),
+            pose_a: Pose::new(origin, turn),
+            b: Known::Cuboid(b),
+            pose_b: Pose::new(origin + turn * d, turn),
+        };
+        let gap = from_cuboid(a + b, d);
+        let found = answer(&case);
+        wrong.unless((found.gap - gap).abs() < 1e-9, || {
+            format!("{case:?}: {found:?}: {} instead of {gap}", found.gap)
+        });
+    }
+    wrong.end();
+}
+
+#[test]
 fn bodies_of_revolution_on_one_axis() {
     let mut wrong = Wrong::default();
     let mut random = Random(47);

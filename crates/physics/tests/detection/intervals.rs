@@ -47,6 +47,26 @@ fn every_interval_holds_at_every_cap() {
 }
 
 #[test]
+fn a_converged_interval_is_narrow() {
+    let mut wrong = Wrong::default();
+    for pair in parametric_pairs() {
+        for class in [Class::Far, Class::Near, Class::Touching] {
+            for index in 0..20 {
+                let (case, _) = drawn(pair, class, SEED, index);
+                let found = answer(&case);
+                if found.capped || found.gap <= 0.0 {
+                    continue;
+                }
+                let name = format!("{pair:?} {} {index}: {found:?}", class.name());
+                let upper = found.upper.expect(&name);
+                wrong.unless(upper - found.gap <= 1e-7 * case.size(), || name.clone());
+            }
+        }
+    }
+    wrong.end();
+}
+
+#[test]
 fn the_lower_bound_grows_with_the_cap() {
     let mut wrong = Wrong::default();
     let mut capped = 0;
@@ -81,8 +101,9 @@ fn the_lower_bound_grows_with_the_cap() {
 }
 
 #[test]
-fn a_coarse_tolerance_is_kept() {
+fn a_coarse_tolerance_costs_less_and_is_kept() {
     let mut wrong = Wrong::default();
+    let (mut coarse_work, mut fine_work) = (0, 0);
     for pair in all_pairs() {
         for index in 0..10 {
             let (case, truth) = drawn(pair, Class::Near, SEED, 2 * index);
@@ -97,8 +118,13 @@ fn a_coarse_tolerance_is_kept() {
             if !coarse.capped {
                 wrong.unless(coarse.gap >= gap - 1e-3, || name.clone());
             }
+            coarse_work += coarse.iterations;
+            fine_work += answer(&case).iterations;
         }
     }
+    wrong.unless(coarse_work < fine_work, || {
+        format!("{coarse_work} iterations instead of {fine_work}")
+    });
     wrong.end();
 }
 

@@ -8,6 +8,8 @@ mod closed;
 mod coincident;
 /// Faces, lines, rims and apexes that meet exactly, and one unit in the last place off.
 mod exact;
+/// Sizes of any magnitude.
+mod extreme;
 /// The time of impact.
 mod impact;
 /// What an answer claims of itself: its interval, its budget, its certificates.
