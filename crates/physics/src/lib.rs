@@ -54,6 +54,7 @@ pub mod advance;
 mod body;
 mod compound;
 mod hash;
+mod hull;
 mod pose;
 pub mod query;
 pub mod response;

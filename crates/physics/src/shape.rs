@@ -8,6 +8,8 @@ use std::sync::Arc;
 use glam::DVec3;
 use thiserror::Error;
 
+use crate::hull::Hull;
+
 /// A size that no shape can have.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum ShapeError {
@@ -78,7 +80,7 @@ pub(crate) struct Profile {
 }
 
 impl Profile {
-    fn new(bottom: f64, top: f64, half_height: f64) -> Profile {
+    pub fn new(bottom: f64, top: f64, half_height: f64) -> Profile {
         let (rise, widening) = (2.0 * half_height, top - bottom);
         let slant = (rise * rise + widening * widening).sqrt();
         Profile {
@@ -122,11 +124,7 @@ pub(crate) enum Kind {
     HalfSpace {
         normal: DVec3,
     },
-    /// Hull of the points; `centre` is their mean.
-    Cloud {
-        points: Arc<[DVec3]>,
-        centre: DVec3,
-    },
+    Cloud(Arc<Hull>),
 }
 
 fn length(shape: &'static str, name: &'static str, value: f64) -> Result<f64, ShapeError> {
@@ -268,7 +266,9 @@ impl Shape {
         }
     }
 
-    /// The hull of a cloud of vertices [m].
+    /// The hull of a cloud of vertices [m]; any number of them may coincide or lie on one line or in one plane.
+    ///
+    /// Takes time in proportion to the square of their number.
     ///
     /// # Errors
     /// `ShapeError::NoPoints` without any, `ShapeError::BadPoint` on one that is not finite.
@@ -280,11 +280,7 @@ impl Shape {
             let point = points[index];
             return Err(ShapeError::BadPoint { index, point });
         }
-        let centre = points.iter().copied().sum::<DVec3>() / points.len() as f64;
-        Ok(Shape::new(Kind::Cloud {
-            points: points.into(),
-            centre,
-        }))
+        Ok(Shape::new(Kind::Cloud(Arc::new(Hull::new(points)))))
     }
 
     /// Farthest point of the shape along `direction` (any length), in the shape's frame [m].
@@ -318,7 +314,7 @@ impl Shape {
         match self.kind {
             Kind::Sphere { .. } | Kind::Capsule { .. } | Kind::Frustum(_) => true,
             Kind::Ellipsoid { semi } | Kind::TruncatedEllipsoid { semi, .. } => semi.x == semi.z,
-            Kind::Cuboid { .. } | Kind::HalfSpace { .. } | Kind::Cloud { .. } => false,
+            Kind::Cuboid { .. } | Kind::HalfSpace { .. } | Kind::Cloud(_) => false,
         }
     }
 }
@@ -338,6 +334,6 @@ fn bounding_radius(kind: &Kind) -> f64 {
         }
         Kind::Cuboid { half } => half.length(),
         Kind::HalfSpace { .. } => f64::INFINITY,
-        Kind::Cloud { points, .. } => points.iter().map(|p| p.length()).fold(0.0, f64::max),
+        Kind::Cloud(hull) => hull.corners.iter().map(|p| p.length()).fold(0.0, f64::max),
     }
 }

@@ -100,7 +100,7 @@ impl Shape {
                 ))
             }
             Kind::HalfSpace { .. } => Piece::point_only(DVec3::ZERO),
-            Kind::Cloud { ref points, .. } => Piece::point_only(points[piece as usize]),
+            Kind::Cloud(ref hull) => Piece::point_only(hull.corners[piece as usize]),
         }
     }
 
@@ -145,7 +145,7 @@ impl Shape {
             Kind::Cuboid { .. } => {
                 u32::from(n.x > 0.0) | u32::from(n.y > 0.0) << 1 | u32::from(n.z > 0.0) << 2
             }
-            Kind::Cloud { ref points, .. } => farthest(points, n),
+            Kind::Cloud(ref hull) => hull.farthest(n) as u32,
         };
         Tip {
             point: self.piece(piece).point(n),
@@ -204,8 +204,9 @@ impl Shape {
                 }
             }
             Kind::HalfSpace { normal } => target - normal * normal.dot(target),
-            Kind::Cloud { ref points, .. } => {
-                let top = n.dot(points[farthest(points, n) as usize]);
+            Kind::Cloud(ref hull) => {
+                let points = &hull.corners;
+                let top = n.dot(points[hull.farthest(n)]);
                 let floor = top - slack * self.size();
                 nearest_in_hull(
                     points.iter().copied().filter(|p| n.dot(*p) >= floor),
@@ -268,18 +269,6 @@ fn nearest_in_hull(points: impl Iterator<Item = DVec3> + Clone, target: DVec3) -
         }
     }
     best.1
-}
-
-/// Index of the point farthest along n; the first of several.
-fn farthest(points: &[DVec3], n: DVec3) -> u32 {
-    let (mut best, mut height) = (0, f64::NEG_INFINITY);
-    for (i, p) in points.iter().enumerate() {
-        let h = n.dot(*p);
-        if h > height {
-            (best, height) = (i, h);
-        }
-    }
-    best as u32
 }
 
 #[cfg(test)]

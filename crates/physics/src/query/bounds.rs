@@ -23,7 +23,7 @@ fn inner_radius(shape: &Placed, point: DVec3) -> Option<f64> {
         Kind::Ellipsoid { semi } => in_ellipsoid(q, *semi)?,
         Kind::TruncatedEllipsoid { semi, cut, .. } => in_ellipsoid(q, *semi)?.min(q.y - cut),
         Kind::HalfSpace { normal } => -q.dot(*normal),
-        Kind::Cloud { .. } => return None,
+        Kind::Cloud(hull) => hull.inner_radius(q)?,
         _ => -closed::outside(shape, point)?.0,
     };
     (radius >= 0.0).then_some(radius)

@@ -10,7 +10,6 @@
 use glam::{DVec2, DVec3};
 
 use super::{Limits, Placed, Separation, flats, gap_along};
-use crate::shape::Kind;
 
 /// Longest step on the tangent plane [rad, about].
 const LONGEST: f64 = 1.0;
@@ -96,80 +95,19 @@ fn model(a: &Placed, b: &Placed, pieces: (u32, u32), tangent: &Tangent, weight: 
     }
 }
 
-/// Signed gap of two shapes of which one is a cloud.
-pub(super) fn separation(
+/// Climbs from `start` to the nearest maximum of s; also the points of b that carry the answer.
+pub(super) fn ascend(
     a: &Placed,
     b: &Placed,
-    start: Option<DVec3>,
+    start: DVec3,
     limits: Limits,
-) -> Separation {
-    let first = start.or_else(|| (middle(b) - middle(a)).try_normalize());
-    let mut best = ascend(a, b, first.unwrap_or(DVec3::Y), limits);
-    if best.gap > limits.enough {
-        return best;
-    }
-    if best.gap <= 0.0 && start.is_none() {
-        best = from_other_starts(a, b, best, limits);
-    }
-    best.upper = (best.gap > 0.0).then(|| (best.point_b - best.point_a).length().max(best.gap));
-    best
-}
-
-/// A point well inside the shape.
-fn middle(shape: &Placed) -> DVec3 {
-    match &shape.shape.kind {
-        Kind::Cloud { centre, .. } => shape.position + shape.rotation * *centre,
-        _ => shape.position,
-    }
-}
-
-/// Searches an overlap again from the shapes' axes and flats, the most promising first, with what is left of the
-/// budget.
-fn from_other_starts(a: &Placed, b: &Placed, first: Separation, limits: Limits) -> Separation {
-    let (ra, rb) = (&a.rotation, &b.rotation);
-    let axes = [
-        ra.x_axis, ra.y_axis, ra.z_axis, rb.x_axis, rb.y_axis, rb.z_axis,
-    ];
-    let mut starts = [(0.0, DVec3::ZERO); 12];
-    for (start, n) in starts
-        .iter_mut()
-        .zip(axes.into_iter().flat_map(|n| [n, -n]))
-    {
-        *start = (gap_along(a, b, n), n);
-    }
-    starts.sort_by(|x, y| y.0.total_cmp(&x.0));
-    let mut best = first;
-    let mut used = first.iterations;
-    for (_, n) in starts {
-        let iteration_cap = limits.iteration_cap.saturating_sub(used);
-        if iteration_cap == 0 {
-            best.capped = true;
-            break;
-        }
-        let other = ascend(
-            a,
-            b,
-            n,
-            Limits {
-                iteration_cap,
-                ..limits
-            },
-        );
-        used += other.iterations;
-        if other.gap > best.gap {
-            best = other;
-        }
-    }
-    best.iterations = used;
-    best
-}
-
-/// Climbs from `start` to the nearest maximum of s.
-fn ascend(a: &Placed, b: &Placed, start: DVec3, limits: Limits) -> Separation {
+) -> (Separation, Vec<DVec3>) {
     let mut climb = Climb::new(a, b, start, limits);
     loop {
         if let Some(answer) = climb.step() {
-            return answer;
+            let carrying = climb.kept.models[..climb.kept.count].iter();
+            let carrying = carrying.filter(|m| m.weight > 0.0).map(|m| m.points.1);
+            return (answer, carrying.collect());
         }
     }
 }

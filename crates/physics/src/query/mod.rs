@@ -4,19 +4,23 @@
 //! `s(n) = n.D`, the gap between the two tangent planes. One n with `s(n) > 0` proves the shapes apart, no closer
 //! than `s(n)`; the largest `s(n)` is the signed gap. The paper leaves the new estimate of n to an unpublished
 //! report. Here there are closed forms for some pairs (`closed`) and a second-order search that follows the kinks of
-//! s for all others (`search`, from where `starts` says); vertex clouds have kinks without number and are searched
-//! with a bundle of their vertices (`bundle`).
+//! s for all others (`search`, from where `starts` says). Vertex clouds have kinks without number: against another
+//! polytope a simplex walks to the closest features (`simplex`), against a curved shape a bundle of corners does
+//! (`bundle`, `polish`), and a growing polytope proves an overlap's depth (`expand`).
 
 mod bounds;
 mod bundle;
 mod closed;
 mod cores;
+mod expand;
 mod flats;
 mod manifold;
 mod outline;
 mod pair;
 mod path;
+mod polish;
 mod search;
+mod simplex;
 mod solve;
 mod starts;
 

@@ -32,7 +32,7 @@ pub(super) fn face(shape: &Placed, n: DVec3) -> Face {
         Kind::Sphere { .. } | Kind::Ellipsoid { .. } => Vec::new(),
         Kind::HalfSpace { .. } => return Face::Plane,
         Kind::Cuboid { half } => box_face(local, *half),
-        Kind::Cloud { points, .. } => cloud_face(local, points),
+        Kind::Cloud(hull) => cloud_face(local, &hull.corners),
         Kind::Capsule { radius, segment } if local.y.abs() <= FLAT => segment
             .height
             .map(|y| DVec3::Y * y + local * *radius)

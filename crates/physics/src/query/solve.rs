@@ -6,7 +6,7 @@ use super::cores::{Core, CuboidCore, EllipsoidCore, PointCore, RevolutionCore, T
 use super::pair::Pair;
 use super::search::Goal;
 use super::starts::{self, Found};
-use super::{Limits, Placed, Separation, bounds, bundle, gap_along};
+use super::{Limits, Placed, Separation, bounds, gap_along, simplex};
 use crate::shape::Kind;
 
 /// Order of the families: a pair is searched with the lower one first, so that each has one search.
@@ -17,7 +17,7 @@ fn family(kind: &Kind) -> u8 {
         Kind::Ellipsoid { .. } => 2,
         Kind::TruncatedEllipsoid { .. } => 3,
         Kind::Cuboid { .. } => 4,
-        Kind::Cloud { .. } | Kind::HalfSpace { .. } => 5,
+        Kind::Cloud(_) | Kind::HalfSpace { .. } => 5,
     }
 }
 
@@ -47,7 +47,7 @@ pub(super) fn search(a: &Placed, b: &Placed, start: Option<DVec3>, limits: Limit
         return search(b, a, start.map(|n| -n), limits).swapped();
     }
     if second == 5 {
-        return bundle::separation(a, b, start, limits);
+        return simplex::separation(a, b, start, limits);
     }
     let task = Task {
         a,
@@ -69,7 +69,7 @@ pub(super) fn search(a: &Placed, b: &Placed, start: Option<DVec3>, limits: Limit
             task.with_b(TruncatedCore::new(&a.rotation, *semi, *cut, *rim))
         }
         Kind::Cuboid { half } => task.with_b(CuboidCore::new(&a.rotation, *half)),
-        Kind::HalfSpace { .. } | Kind::Cloud { .. } => bundle::separation(a, b, start, limits),
+        Kind::HalfSpace { .. } | Kind::Cloud(_) => simplex::separation(a, b, start, limits),
     }
 }
 
@@ -98,8 +98,8 @@ impl Task<'_> {
                 self.solve(a, TruncatedCore::new(&mirrored, *semi, *cut, *rim))
             }
             Kind::Cuboid { half } => self.solve(a, CuboidCore::new(&mirrored, *half)),
-            Kind::HalfSpace { .. } | Kind::Cloud { .. } => {
-                bundle::separation(self.a, self.b, self.start, self.limits)
+            Kind::HalfSpace { .. } | Kind::Cloud(_) => {
+                simplex::separation(self.a, self.b, self.start, self.limits)
             }
         }
     }
