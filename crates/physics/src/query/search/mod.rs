@@ -1,0 +1,279 @@
+//! The search for the largest s(n): Newton's method on the sphere of normals that knows where s has kinks.
+//!
+//! It is in one of three states. *Free*: s is smooth around n, the step solves `(C_a + C_b + s) t = D - s n` (the
+//! second-order reading of the paper's unpublished estimate). *On a circle*: n runs along one kink, the closest point
+//! lies somewhere on an edge, a mantle line or between two faces' rims. *On a corner*: two kinks cross in n.
+//! A way that meets a kink goes on through it while s rises behind it and stays on it where s would fall; a kink
+//! is left when the closest points do not line up on its jump. s never falls from one accepted normal to the next.
+
+mod free;
+mod kink;
+mod walk;
+
+use glam::DVec3;
+
+use super::cores::Core;
+use super::pair::{OF_B, Pair, Tips};
+
+/// Offset across n that leaves the interval of an answer narrow enough, in units of the pair's size.
+const NARROW: f64 = 1e-8;
+/// Closest points are lined up when this far apart across n, in units of the pair's size.
+const LINED_UP: f64 = 1e-11;
+/// A gain below this is rounding, in units of the pair's size.
+const ROUNDING: f64 = 1e-14;
+
+/// What holds the normal at present.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum State {
+    Free,
+    /// On the circle with this number.
+    Circle(usize),
+    /// Where these two circles cross.
+    Corner(usize, usize),
+    /// On the axis of the disc that ends a (false) or b (true), to be left if it is not the answer.
+    Disc(bool),
+}
+
+impl State {
+    /// Bits of the circles that hold the normal.
+    fn held(self) -> u8 {
+        match self {
+            State::Circle(i) => 1 << i,
+            State::Corner(i, j) => 1 << i | 1 << j,
+            State::Free | State::Disc(_) => 0,
+        }
+    }
+}
+
+/// When the search may stop, in metres.
+#[derive(Clone, Copy)]
+pub(super) struct Goal {
+    pub cap: u32,
+    pub tolerance: f64,
+    pub enough: f64,
+}
+
+/// Where a search ended.
+#[derive(Clone, Copy)]
+pub(super) struct Summit {
+    pub n: DVec3,
+    pub s: f64,
+    /// Points of the cores whose connection is closest to n, from their centres (b mirrored) [m].
+    pub points: (DVec3, DVec3),
+    pub iterations: u32,
+    /// Whether the closest points line up.
+    pub converged: bool,
+}
+
+pub(super) struct Search<'p, A, B> {
+    pair: &'p Pair<A, B>,
+    goal: Goal,
+    n: DVec3,
+    tips: Tips,
+    s: f64,
+    state: State,
+    /// Circles whose sides the search holds to, as bits: its own and those that coincide with them.
+    held: u8,
+    /// Kink that was left just now, and the direction away from it.
+    left: Option<(usize, DVec3)>,
+    /// How much worse than the slope along it a kink must be to be left before the search along it has ended.
+    patience: f64,
+    iterations: u32,
+    idle: u32,
+    last: f64,
+}
+
+/// How a search ended.
+#[derive(Clone, Copy, PartialEq)]
+enum Ending {
+    /// The closest points line up as its state says.
+    LinedUp,
+    /// They do within the faces under n, although no step gained anything any more.
+    OnFaces,
+    /// The gap is as large as was asked for.
+    Enough,
+    /// The iterations or the gains ended first.
+    Unfinished,
+}
+
+impl<'p, A: Core, B: Core> Search<'p, A, B> {
+    #[inline(always)]
+    pub fn run(pair: &'p Pair<A, B>, start: DVec3, state: State, goal: Goal) -> Summit {
+        let mut search = Search::new(pair, start, state, goal);
+        let ending = search.climb();
+        search.summit(ending)
+    }
+
+    #[inline(always)]
+    fn new(pair: &'p Pair<A, B>, n: DVec3, state: State, goal: Goal) -> Self {
+        let natural = pair.tips(n);
+        let below = pair.tips_held(n, state.held(), 0);
+        let (s, proven) = (n.dot(pair.between(&below)), n.dot(pair.between(&natural)));
+        // Circles that almost touch cross in no exact normal.
+        let exact = s - proven <= 10.0 * ROUNDING * pair.size;
+        let (state, tips, s) = if exact {
+            (state, below, s)
+        } else {
+            (State::Free, natural, proven)
+        };
+        let patience = if matches!(state, State::Circle(_)) {
+            8.0
+        } else {
+            0.3
+        };
+        Search {
+            pair,
+            goal,
+            n,
+            tips,
+            s,
+            state,
+            held: held(pair, state),
+            left: None,
+            patience,
+            iterations: 0,
+            idle: 0,
+            last: f64::NEG_INFINITY,
+        }
+    }
+
+    /// Climbs until the closest points line up or no more can be done.
+    #[inline(always)]
+    fn climb(&mut self) -> Ending {
+        loop {
+            if self.s > self.goal.enough {
+                return Ending::Enough;
+            }
+            if self.iterations >= self.goal.cap || self.is_idle() {
+                return if self.lines_up() {
+                    Ending::OnFaces
+                } else {
+                    Ending::Unfinished
+                };
+            }
+            self.iterations += 1;
+            let over = match self.state {
+                State::Free => self.step_free(),
+                State::Disc(of_b) => {
+                    self.state = State::Free;
+                    self.visit_disc(of_b, true)
+                        .unwrap_or_else(|(step, rise)| self.travel(step, rise, false))
+                }
+                State::Circle(index) => self.step_along(index),
+                State::Corner(i, j) => self.step_corner(i, j),
+            };
+            if over {
+                return Ending::LinedUp;
+            }
+        }
+    }
+
+    /// Whether the search has stopped gaining although its conditions do not hold: rounding has the last word.
+    #[inline(always)]
+    fn is_idle(&mut self) -> bool {
+        if self.iterations > 3 {
+            let gained = self.s > self.last + ROUNDING * self.pair.size;
+            self.idle = if gained { 0 } else { self.idle + 1 };
+            self.last = self.s;
+        }
+        self.idle >= 3
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn lines_up(&self) -> bool {
+        let (a, b) = self.pair.line_up(self.n);
+        let d = self.pair.offset - a - b;
+        (d - self.n * self.n.dot(d)).length() < 1e-9 * self.pair.size
+    }
+
+    /// Whether an offset across n of this squared length leaves |D| - s narrow.
+    #[inline(always)]
+    fn is_narrow(&self, across_squared: f64) -> bool {
+        let narrow = self.goal.tolerance.max(NARROW * self.pair.size);
+        self.s <= 0.0 || across_squared <= narrow * narrow
+    }
+
+    /// Puts the search on a kink.
+    #[inline(always)]
+    fn hold(&mut self, state: State, n: DVec3, sides: u8) {
+        self.tips = self.pair.tips_on(n, sides & !state.held());
+        self.n = n;
+        self.s = n.dot(self.pair.between(&self.tips));
+        self.state = state;
+        self.held = held(self.pair, state);
+    }
+
+    /// Moves to a normal unless s is lower there.
+    #[inline(always)]
+    fn accept(&mut self, n: DVec3, tips: Tips) {
+        let s = n.dot(self.pair.between(&tips));
+        if s >= self.s - 10.0 * ROUNDING * self.pair.size {
+            (self.n, self.tips, self.s) = (n, tips, s);
+        }
+    }
+
+    /// The answer where the search stands.
+    #[inline(always)]
+    fn summit(self, ending: Ending) -> Summit {
+        // On a kink the search holds to one side of it; what is proven is s itself.
+        let natural = self.held == 0 && ending != Ending::Unfinished;
+        let s = if natural {
+            self.s
+        } else {
+            self.s.min(self.pair.gap(self.n))
+        };
+        // Where several jumps coincide their shares are not told apart by one.
+        let twins = self.held != self.state.held();
+        let faces = ending == Ending::OnFaces || twins || matches!(self.state, State::Disc(_));
+        Summit {
+            n: self.n,
+            s,
+            points: if faces {
+                self.pair.line_up(self.n)
+            } else {
+                self.points()
+            },
+            iterations: self.iterations,
+            converged: ending != Ending::Unfinished,
+        }
+    }
+
+    /// The support points, on kinks the points of their jumps that line up best.
+    #[inline(always)]
+    fn points(&self) -> (DVec3, DVec3) {
+        let (mut a, mut b) = (self.tips.a.point, self.tips.b.point);
+        let mut add = |index: usize, share: f64| {
+            let moved = self.jump(index) * share.clamp(0.0, 1.0);
+            if index < OF_B {
+                a += moved;
+            } else {
+                b += moved;
+            }
+        };
+        let d = self.pair.between(&self.tips);
+        match self.state {
+            State::Free | State::Disc(_) => {}
+            State::Circle(i) => {
+                let jump = self.jump(i);
+                add(i, jump.dot(d) / jump.length_squared());
+            }
+            State::Corner(i, j) => {
+                let (share_i, share_j) = self.shares(i, j, d);
+                add(i, share_i);
+                add(j, share_j);
+            }
+        }
+        (a, b)
+    }
+}
+
+/// The circles whose sides a search in this state holds to.
+#[inline(always)]
+fn held<A: Core, B: Core>(pair: &Pair<A, B>, state: State) -> u8 {
+    match state {
+        State::Free | State::Disc(_) => 0,
+        State::Circle(i) => state.held() | pair.twins(i),
+        State::Corner(i, j) => state.held() | pair.twins(i) | pair.twins(j),
+    }
+}
