@@ -65,20 +65,22 @@ pub(super) fn separation(
         iterations: first.iterations,
         converged: !first.capped,
     };
-    if !known.converged {
+    let shallow = CERTAIN * size;
+    if !known.converged && -known.best.s <= shallow {
         polish(a, b, &different(carrying), &mut known, limits);
     }
     if known.best.s > 0.0 || known.best.s > limits.enough {
         return apart(a, b, known, limits.enough);
     }
     // A shallow overlap leaves no room for a better way out, and an unfinished climb no budget to follow one.
-    if !known.converged || -known.best.s <= CERTAIN * size {
+    let spent = !known.converged && known.iterations >= limits.iteration_cap;
+    if spent || -known.best.s <= shallow {
         let balls = bounds::overlap(a, b, (known.points.0 + known.points.1) * 0.5);
         return known.answer(balls.map(|up| up.max(known.best.s)));
     }
     let start = corner(a, b, known.best.n);
-    let growth = expand::grow(a, b, &[start], known.best, 0, GROWN, CERTAIN * size);
-    if growth.best.s > known.best.s + 0.1 * CERTAIN * size {
+    let growth = expand::grow(a, b, &[start], known.best, 0, GROWN, shallow);
+    if growth.best.s > known.best.s + 0.1 * shallow || !known.converged {
         known.best = growth.best;
         known.points = growth.contact(a, b);
         known.converged = false;
@@ -89,7 +91,7 @@ pub(super) fn separation(
         return apart(a, b, known, limits.enough);
     }
     let room = growth.inner.map(|inner| -inner - known.best.s);
-    known.converged &= room.is_some_and(|room| room <= 2.0 * CERTAIN * size);
+    known.converged &= room.is_some_and(|room| room <= 2.0 * shallow);
     let balls = bounds::overlap(a, b, (known.points.0 + known.points.1) * 0.5);
     let inner = growth.inner.map(|inner| -inner);
     let upper = balls.into_iter().chain(inner).reduce(f64::min);
