@@ -11,15 +11,16 @@ use crate::{Wrong, answer};
 
 const SEED: u64 = 1_997;
 
-/// Judges `poses` answers of every pair of parametric shapes and class, and complains where `wrong` says why.
+/// Judges `poses` answers of each of the `pairs` and classes, and complains where `wrong` says why.
 fn complain(
+    pairs: Vec<(&'static str, &'static str)>,
     classes: &[Class],
     poses: usize,
     wrong: impl Fn(&Separation, &Verdict, f64) -> Option<&'static str>,
 ) {
     let oracle = Oracle::new(800, 4);
     let mut complaints = Wrong::default();
-    for pair in parametric_pairs() {
+    for &pair in &pairs {
         for class in classes {
             for index in 0..poses {
                 let (case, truth) = drawn(pair, *class, SEED, index);
@@ -41,15 +42,21 @@ fn complain(
     complaints.end();
 }
 
+/// Whether an error is too large, or not even a number.
+fn above(error: f64, bound: f64) -> bool {
+    error.is_nan() || error > bound
+}
+
 #[test]
 fn far_near_and_touching_answers_are_right() {
     complain(
+        all_pairs(),
         &[Class::Far, Class::Near, Class::Touching],
         24,
         |_, verdict, size| {
-            if verdict.gap_error > 1e-6 * size {
+            if above(verdict.gap_error, 1e-6 * size) {
                 Some("gap")
-            } else if verdict.normal_error > 1e-4 {
+            } else if above(verdict.normal_error, 1e-4) {
                 Some("normal")
             } else {
                 None
@@ -60,8 +67,20 @@ fn far_near_and_touching_answers_are_right() {
 
 #[test]
 fn deep_answers_are_the_shallowest_way_out() {
-    complain(&[Class::Deep], 24, |_, verdict, size| {
-        (verdict.gap_error > 1e-4 * size).then_some("gap")
+    complain(
+        parametric_pairs(),
+        &[Class::Deep],
+        24,
+        |_, verdict, size| above(verdict.gap_error, 1e-4 * size).then_some("gap"),
+    );
+}
+
+/// Two polytopes of many corners may need more new normals than the cap allows; then they say so.
+#[test]
+fn deep_answers_of_clouds_are_the_shallowest_way_out_or_say_that_they_ended_early() {
+    complain(all_pairs(), &[Class::Deep], 24, |found, verdict, size| {
+        let wrong = above(verdict.gap_error, 1e-4 * size) && !found.capped;
+        wrong.then_some("gap")
     });
 }
 

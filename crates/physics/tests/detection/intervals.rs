@@ -49,7 +49,7 @@ fn every_interval_holds_at_every_cap() {
 #[test]
 fn a_converged_interval_is_narrow() {
     let mut wrong = Wrong::default();
-    for pair in parametric_pairs() {
+    for pair in all_pairs() {
         for class in [Class::Far, Class::Near, Class::Touching] {
             for index in 0..20 {
                 let (case, _) = drawn(pair, class, SEED, index);
