@@ -164,7 +164,7 @@ impl Tally {
         if !warm.gap.is_finite() || warm.gap < verdict.truth.0 - tolerance(self.class) * case.size()
         {
             self.warm_wrong += 1;
-            if !warm.capped {
+            if !warm.capped && !warm.local {
                 self.warm_unsaid += 1;
                 complaints.push("warm");
             }

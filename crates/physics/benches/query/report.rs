@@ -32,7 +32,7 @@ half of the near and touching poses are built so that gap and normal are known; 
 bound the gap from both sides by the judge's own formulas, and where these do not meet, which is where bodies overlap, a dense
 search over all normals decides. Wrong: off by more than 1e-6 of the size (the larger bounding radius), deep 1e-4; a normal off
 by more than 1e-4 rad. Outside: the true gap lies outside the answer's interval. Too wide: converged, apart, and the interval is
-wider than 1e-7 of the size. Unsaid: wrong, and not marked as capped. Warm: from a normal 0.02 rad off the answer.
+wider than 1e-7 of the size. Unsaid: wrong, and not marked as capped or local. Warm: from a normal 0.02 rad off the answer.
 
 ";
 

@@ -440,6 +440,7 @@ impl Bundle {
             point_b: point_b / total,
             iterations,
             capped,
+            local: false,
         }
     }
 }

@@ -36,6 +36,7 @@ fn answer(gap: f64, normal: DVec3, point_a: DVec3, point_b: DVec3) -> Separation
         point_b,
         iterations: 0,
         capped: false,
+        local: false,
     }
 }
 

@@ -44,6 +44,7 @@ pub(super) fn separation(
         point_b,
         iterations: growth.iterations,
         capped: !growth.converged,
+        local: false,
     }
 }
 

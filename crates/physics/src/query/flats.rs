@@ -31,6 +31,7 @@ pub(super) fn line_up(a: &Placed, b: &Placed, n: DVec3, s: f64) -> Result<Separa
                 point_b,
                 iterations,
                 capped,
+                local: false,
             });
         }
         if length > 0.999 * last {

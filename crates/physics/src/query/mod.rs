@@ -83,6 +83,8 @@ pub struct Separation {
     /// Whether the search ended before the closest points lined up, or before every promising start was tried: the
     /// bounds hold, the normal is only an estimate.
     pub capped: bool,
+    /// Whether an overlap was searched from the given start alone: there may be a shallower way out elsewhere.
+    pub local: bool,
 }
 
 /// A proof that two shapes are apart.
@@ -246,6 +248,7 @@ fn far(a: &Placed, b: &Placed, enough: f64) -> Option<Separation> {
         point_b: b.position - normal * radius_b,
         iterations: 0,
         capped: false,
+        local: false,
     })
 }
 

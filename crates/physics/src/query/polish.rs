@@ -128,6 +128,7 @@ impl Known {
             point_b: self.points.1,
             iterations: self.iterations,
             capped: !self.converged,
+            local: false,
         }
     }
 }

@@ -190,6 +190,7 @@ impl Simplex {
             point_b,
             iterations,
             capped: !finished,
+            local: false,
         }
     }
 

@@ -143,6 +143,7 @@ impl Task<'_> {
             point_b,
             iterations: summit.iterations,
             capped: found.capped,
+            local: found.local,
         }
     }
 }

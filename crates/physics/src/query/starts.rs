@@ -19,6 +19,8 @@ pub(super) struct Found {
     pub summit: Summit,
     /// Whether the iterations ended before the search did.
     pub capped: bool,
+    /// Whether an overlap was searched from a known start alone.
+    pub local: bool,
 }
 
 /// Cosine of the angle from the start within which a maximum of s is taken for the one that was meant: 0.1 rad.
@@ -33,7 +35,12 @@ pub(super) fn from_known<A: Core, B: Core>(pair: &Pair<A, B>, start: DVec3, goal
     let stayed = summit.s > -SHALLOW * pair.size || summit.n.dot(start) > STAYED;
     if (summit.converged && stayed) || summit.iterations >= goal.cap {
         let capped = !summit.converged || !stayed;
-        return Found { summit, capped };
+        let local = summit.s <= 0.0;
+        return Found {
+            summit,
+            capped,
+            local,
+        };
     }
     let cap = goal.cap - summit.iterations;
     let mut found = from_nothing(pair, Goal { cap, ..goal });
@@ -59,6 +66,7 @@ pub(super) fn from_nothing<A: Core, B: Core>(pair: &Pair<A, B>, goal: Goal) -> F
         return Found {
             summit: first,
             capped: false,
+            local: false,
         };
     }
     let mut candidates = Candidates::new();
@@ -188,6 +196,7 @@ impl Candidates {
         Found {
             summit: best,
             capped: !best.converged,
+            local: false,
         }
     }
 
@@ -226,6 +235,7 @@ impl Candidates {
         Found {
             summit: best,
             capped,
+            local: false,
         }
     }
 }

@@ -67,6 +67,24 @@ fn a_converged_interval_is_narrow() {
 }
 
 #[test]
+fn an_overlap_searched_from_one_start_alone_says_so() {
+    let mut wrong = Wrong::default();
+    for pair in [("ell", "ell"), ("cyl", "cone"), ("frus", "box")] {
+        for index in 0..20 {
+            let (case, _) = drawn(pair, Class::Deep, SEED, index);
+            let cold = answer(&case);
+            let warm = ask(&case, Some(cold.normal), Limits::default());
+            let name = format!("{pair:?} {index}: {cold:?} {warm:?}");
+            wrong.unless(!cold.local && (warm.local || warm.gap > 0.0), || name);
+        }
+        let (near, _) = drawn(pair, Class::Near, SEED, 0);
+        let warm = ask(&near, Some(answer(&near).normal), Limits::default());
+        wrong.unless(!warm.local, || format!("{pair:?}: {warm:?}"));
+    }
+    wrong.end();
+}
+
+#[test]
 fn the_lower_bound_grows_with_the_cap() {
     let mut wrong = Wrong::default();
     let mut capped = 0;
