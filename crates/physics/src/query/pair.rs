@@ -142,15 +142,3 @@ impl<A: Core, B: Core> Pair<A, B> {
         (point_a, point_b)
     }
 }
-
-/// Two unit vectors that complete n to an orthonormal basis, without a branch (Duff et al. 2017).
-#[inline(always)]
-pub(super) fn basis(n: DVec3) -> (DVec3, DVec3) {
-    let sign = 1.0_f64.copysign(n.z);
-    let k = -1.0 / (sign + n.z);
-    let m = n.x * n.y * k;
-    (
-        DVec3::new(1.0 + sign * n.x * n.x * k, sign * m, -sign * n.x),
-        DVec3::new(m, sign + n.y * n.y * k, -n.y),
-    )
-}

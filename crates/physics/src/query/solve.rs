@@ -46,9 +46,6 @@ pub(super) fn search(a: &Placed, b: &Placed, start: Option<DVec3>, limits: Limit
     if first > second {
         return search(b, a, start.map(|n| -n), limits).swapped();
     }
-    if second == 5 {
-        return simplex::separation(a, b, start, limits);
-    }
     let task = Task {
         a,
         b,

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::cores::Core;
-use super::pair::{OF_B, Pair, basis};
+use super::pair::{OF_B, Pair};
 use super::path::crossings;
 use super::search::{Goal, Search, State, Summit};
 
@@ -135,7 +135,10 @@ impl Candidates {
         for i in (0..2 * OF_B).filter(|i| Pair::<A, B>::has_circle(*i)) {
             let circle = &pair.circle(i);
             if A::CURVED || B::CURVED {
-                let side = || circle.axis * circle.height + basis(circle.axis).0 * circle.radius;
+                let side = || {
+                    circle.axis * circle.height
+                        + circle.axis.any_orthonormal_pair().0 * circle.radius
+                };
                 let n = circle.nearest(pair.offset).unwrap_or_else(side);
                 self.put(pair, n, State::Circle(i));
                 for n in if i < OF_B { &ends_b } else { &ends_a }.iter().flatten() {

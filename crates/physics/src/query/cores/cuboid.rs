@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::{Circle, Core, Disc, SQUARE, Symmetric, Tip};
+use super::{Circle, Core, SQUARE, Symmetric, Tip};
 
 pub(in crate::query) struct CuboidCore {
     axes: [DVec3; 3],
@@ -48,30 +48,12 @@ impl Core for CuboidCore {
     }
 
     #[inline(always)]
-    fn curvature(&self, _: DVec3, _: &Tip, _: DVec3, _: DVec3) -> [f64; 3] {
-        [0.0; 3]
-    }
-
-    #[inline(always)]
-    fn curvature_along(&self, _: DVec3, _: &Tip, _: DVec3) -> f64 {
-        0.0
-    }
-
-    #[inline(always)]
     fn circle(&self, index: usize) -> Circle {
         Circle {
             axis: self.axes[index],
             height: 0.0,
             radius: 1.0,
             jump: 2.0 * self.half[index],
-        }
-    }
-
-    fn disc(&self, _: u8) -> Disc {
-        Disc {
-            axis: DVec3::ZERO,
-            radius: 0.0,
-            centre: DVec3::ZERO,
         }
     }
 

@@ -2,7 +2,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::{Circle, Core, Disc, Symmetric, Tip};
+use super::{Core, Symmetric, Tip};
 
 /// `{p : p^T M^-1 p <= 1}`: support point `M n / h` with `h = sqrt(n.M n)`, derivative `(M - P P^T) / h`.
 pub(in crate::query) struct EllipsoidCore {
@@ -49,11 +49,6 @@ impl Core for EllipsoidCore {
     }
 
     #[inline(always)]
-    fn tip_on(&self, n: DVec3, _: u8) -> Tip {
-        self.tip(n)
-    }
-
-    #[inline(always)]
     fn curvature(&self, _: DVec3, tip: &Tip, u: DVec3, w: DVec3) -> [f64; 3] {
         quadric(&self.square, tip.point, tip.inverse, u, w)
     }
@@ -62,22 +57,6 @@ impl Core for EllipsoidCore {
     fn curvature_along(&self, _: DVec3, tip: &Tip, e: DVec3) -> f64 {
         let q = tip.point.dot(e);
         (self.square.times(e).dot(e) - q * q) * tip.inverse
-    }
-
-    fn circle(&self, _: usize) -> Circle {
-        Circle::NONE
-    }
-
-    fn disc(&self, _: u8) -> Disc {
-        Disc {
-            axis: DVec3::ZERO,
-            radius: 0.0,
-            centre: DVec3::ZERO,
-        }
-    }
-
-    fn face_point(&self, n: DVec3, _: DVec3) -> DVec3 {
-        self.tip(n).point
     }
 
     fn extents(&self) -> Symmetric {

@@ -66,6 +66,14 @@ pub(super) struct Disc {
     pub centre: DVec3,
 }
 
+impl Disc {
+    const NONE: Disc = Disc {
+        axis: DVec3::ZERO,
+        radius: 0.0,
+        centre: DVec3::ZERO,
+    };
+}
+
 /// Symmetric 3 x 3 matrix: xx, xy, xz, yy, yz, zz.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Symmetric([f64; 6]);
@@ -137,6 +145,8 @@ impl Symmetric {
 }
 
 /// What the search asks of a core. All vectors in the common frame, points from the core's centre.
+///
+/// What a core does not override it does not have: kinks, discs, flat faces, curvature.
 pub(super) trait Core {
     /// How many kinks there are.
     const CIRCLES: usize;
@@ -151,22 +161,41 @@ pub(super) trait Core {
     fn tip(&self, n: DVec3) -> Tip;
 
     /// Support point of the part of the surface on the given `sides`, whether or not n lies there.
-    fn tip_on(&self, n: DVec3, sides: u8) -> Tip;
+    ///
+    /// Cores without kinks have one part only: the one in charge at n.
+    #[inline(always)]
+    fn tip_on(&self, n: DVec3, _sides: u8) -> Tip {
+        self.tip(n)
+    }
 
     /// Derivative of the support point `tip` by n within the tangent plane of u and w: uu, uw, ww [m].
-    fn curvature(&self, n: DVec3, tip: &Tip, u: DVec3, w: DVec3) -> [f64; 3];
+    #[inline(always)]
+    fn curvature(&self, _n: DVec3, _tip: &Tip, _u: DVec3, _w: DVec3) -> [f64; 3] {
+        [0.0; 3]
+    }
 
     /// The same along the one direction e [m].
-    fn curvature_along(&self, n: DVec3, tip: &Tip, e: DVec3) -> f64;
+    #[inline(always)]
+    fn curvature_along(&self, _n: DVec3, _tip: &Tip, _e: DVec3) -> f64 {
+        0.0
+    }
 
     /// The circle with number `index`.
-    fn circle(&self, index: usize) -> Circle;
+    #[inline(always)]
+    fn circle(&self, _index: usize) -> Circle {
+        Circle::NONE
+    }
 
     /// The disc at the end that tips on these `sides` belong to.
-    fn disc(&self, sides: u8) -> Disc;
+    #[inline(always)]
+    fn disc(&self, _sides: u8) -> Disc {
+        Disc::NONE
+    }
 
     /// Point nearest to `target` of all that are farthest along n within `SQUARE`.
-    fn face_point(&self, n: DVec3, target: DVec3) -> DVec3;
+    fn face_point(&self, n: DVec3, _target: DVec3) -> DVec3 {
+        self.tip(n).point
+    }
 
     /// Ellipsoid-like matrix of the core's extents [m2], from which the first normal is guessed.
     fn extents(&self) -> Symmetric;
@@ -191,37 +220,6 @@ impl Core for PointCore {
             sides: 0,
             inverse: 0.0,
         }
-    }
-
-    #[inline(always)]
-    fn tip_on(&self, n: DVec3, _: u8) -> Tip {
-        self.tip(n)
-    }
-
-    #[inline(always)]
-    fn curvature(&self, _: DVec3, _: &Tip, _: DVec3, _: DVec3) -> [f64; 3] {
-        [0.0; 3]
-    }
-
-    #[inline(always)]
-    fn curvature_along(&self, _: DVec3, _: &Tip, _: DVec3) -> f64 {
-        0.0
-    }
-
-    fn circle(&self, _: usize) -> Circle {
-        Circle::NONE
-    }
-
-    fn disc(&self, _: u8) -> Disc {
-        Disc {
-            axis: DVec3::ZERO,
-            radius: 0.0,
-            centre: DVec3::ZERO,
-        }
-    }
-
-    fn face_point(&self, _: DVec3, _: DVec3) -> DVec3 {
-        DVec3::ZERO
     }
 
     fn extents(&self) -> Symmetric {

@@ -3,7 +3,7 @@
 use glam::{DMat3, DVec3};
 
 use super::ellipsoid::quadric;
-use super::{Circle, Core, Disc, SQUARE, Symmetric, Tip};
+use super::{Core, Disc, SQUARE, Symmetric, Tip};
 
 pub(in crate::query) struct TruncatedCore {
     up: DVec3,
@@ -63,12 +63,6 @@ impl Core for TruncatedCore {
         }
     }
 
-    /// The two parts are not rivals of which the farther counts: only the one in charge at n is meant.
-    #[inline(always)]
-    fn tip_on(&self, n: DVec3, _: u8) -> Tip {
-        self.tip(n)
-    }
-
     #[inline(always)]
     fn curvature(&self, _: DVec3, tip: &Tip, u: DVec3, w: DVec3) -> [f64; 3] {
         if tip.sides == 0 {
@@ -81,10 +75,6 @@ impl Core for TruncatedCore {
     #[inline(always)]
     fn curvature_along(&self, n: DVec3, tip: &Tip, e: DVec3) -> f64 {
         self.curvature(n, tip, e, e)[0]
-    }
-
-    fn circle(&self, _: usize) -> Circle {
-        Circle::NONE
     }
 
     #[inline(always)]

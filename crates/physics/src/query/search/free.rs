@@ -3,7 +3,6 @@
 use glam::DVec3;
 
 use super::super::cores::{Core, Disc};
-use super::super::pair::basis;
 use super::super::path::Arc;
 use super::walk::End;
 use super::{LINED_UP, ROUNDING, Search, State};
@@ -45,7 +44,7 @@ impl<A: Core, B: Core> Search<'_, A, B> {
     fn newton_step(&mut self) -> Step {
         let (pair, n, s) = (self.pair, self.n, self.s);
         let d = pair.between(&self.tips);
-        let (u, w) = basis(n);
+        let (u, w) = n.any_orthonormal_pair();
         let g = (u.dot(d), w.dot(d));
         let across = g.0 * g.0 + g.1 * g.1;
         let level = across <= (LINED_UP * pair.size).powi(2);
