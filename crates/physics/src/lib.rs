@@ -57,6 +57,8 @@ mod hash;
 mod hull;
 mod pose;
 pub mod query;
+#[cfg(test)]
+mod random;
 pub mod response;
 pub mod rival;
 mod shape;

@@ -3,23 +3,7 @@
 use glam::DQuat;
 
 use super::*;
-
-struct Random(u64);
-
-impl Random {
-    /// A number from -1 to 1 (SplitMix64).
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn point(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next())
-    }
-}
+use crate::random::Random;
 
 /// The points of a grid on and in a turned cube.
 fn grid(steps: i32, turn: DQuat) -> Vec<DVec3> {
@@ -59,12 +43,12 @@ fn the_support_height_is_that_of_all_points() {
     for round in 0..60 {
         let count = 4 + 7 * round;
         let points: Vec<DVec3> = match round % 3 {
-            0 => (0..count).map(|_| random.point()).collect(),
-            1 => (0..count).map(|_| random.point().normalize()).collect(),
+            0 => (0..count).map(|_| random.vector()).collect(),
+            1 => (0..count).map(|_| random.vector().normalize()).collect(),
             // A plate with doubles, a thousand times as wide as thick.
             _ => {
                 let mut plate: Vec<DVec3> = (0..count)
-                    .map(|_| random.point() * DVec3::new(1.0, 1e-3, 1.0))
+                    .map(|_| random.vector() * DVec3::new(1.0, 1e-3, 1.0))
                     .collect();
                 plate.extend_from_within(..);
                 plate
@@ -72,7 +56,7 @@ fn the_support_height_is_that_of_all_points() {
         };
         let hull = Hull::new(&points);
         for _ in 0..100 {
-            let n = random.point().normalize();
+            let n = random.vector().normalize();
             let height = |of: &[DVec3]| {
                 of.iter()
                     .map(|p| n.dot(*p))
@@ -97,7 +81,7 @@ fn points_inside_are_dropped() {
     let seed = 3;
     println!("seed {seed}");
     let mut random = Random(seed);
-    let mut points: Vec<DVec3> = (0..500).map(|_| random.point() * 0.9).collect();
+    let mut points: Vec<DVec3> = (0..500).map(|_| random.vector() * 0.9).collect();
     points.extend(grid(1, DQuat::IDENTITY));
     assert_eq!(Hull::new(&points).corners.len(), 8);
 }

@@ -271,22 +271,11 @@ impl Tree {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::Random;
 
-    /// SplitMix64 (Steele, Lea and Flood 2014), as numbers in [0, 1).
-    struct Random(u64);
-
-    impl Random {
-        fn next(&mut self) -> f64 {
-            self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-            let mut z = self.0;
-            z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-        }
-
-        fn vector(&mut self) -> DVec3 {
-            DVec3::new(self.next(), self.next(), self.next())
-        }
+    /// Three numbers in [0, 1).
+    fn corner(random: &mut Random) -> DVec3 {
+        DVec3::new(random.unit(), random.unit(), random.unit())
     }
 
     fn depth(tree: &Tree) -> u32 {
@@ -315,14 +304,14 @@ mod tests {
         let mut boxes: Vec<Option<Bounds>> = vec![None; 300];
         let (mut stack, mut found) = (Vec::new(), Vec::new());
         for round in 0..20_000 {
-            let body = (random.next() * 300.0) as usize;
-            if random.next() < 0.2 {
+            let body = (random.unit() * 300.0) as usize;
+            if random.unit() < 0.2 {
                 tree.remove(body as u32);
                 boxes[body] = None;
             } else {
                 // Long, flat and tiny ones too.
-                let size = random.vector() * random.vector() * random.vector() * 4.0;
-                let low = random.vector() * 10.0;
+                let size = corner(&mut random) * corner(&mut random) * corner(&mut random) * 4.0;
+                let low = corner(&mut random) * 10.0;
                 let bounds = Bounds {
                     low,
                     high: low + size,
@@ -333,7 +322,7 @@ mod tests {
             if round == 0 || round == 19_999 {
                 check(&tree);
             }
-            let probe = Bounds::around(random.vector() * 10.0, random.next());
+            let probe = Bounds::around(corner(&mut random) * 10.0, random.unit());
             found.clear();
             tree.find(&probe, &mut stack, &mut found);
             found.sort_unstable();

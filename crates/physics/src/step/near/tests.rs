@@ -5,26 +5,12 @@ use std::sync::Arc;
 use glam::{DQuat, DVec3};
 
 use crate::query::{Limits, separation};
+use crate::random::Random;
 use crate::{BodyDef, Compound, MassProperties, Material, Motion, Pose, Settings, Shape, World};
 
 const DT: f64 = 1.0 / 720.0;
 
-/// SplitMix64 (Steele, Lea and Flood 2014), as numbers in [-1, 1).
-struct Random(u64);
-
 impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(&mut self) -> DVec3 {
-        DVec3::new(self.next(), self.next(), self.next())
-    }
-
     /// Small and large ones alike: two decades up to `largest`.
     fn size(&mut self, largest: f64) -> f64 {
         largest * libm::pow(10.0, self.next() - 1.0)
