@@ -7,7 +7,7 @@ use glam::DVec3;
 use hecs::Entity;
 use physics::{
     Body, BodyDef, BodyId, Compound, MassProperties, Material, Motion, Pose, Response, Settings,
-    Shape, ShapeError, World,
+    Shape, ShapeError, Surface, World,
 };
 
 use crate::GameError;
@@ -167,6 +167,7 @@ impl<'a> Builder<'a> {
             iteration_cap: physics.iteration_cap,
             friction_reference_s: physics.friction_reference_s,
             sleeping: physics.sleeping,
+            ..Settings::default()
         };
         Ok(Self {
             config,
@@ -189,6 +190,7 @@ impl<'a> Builder<'a> {
         let material = Material {
             elasticity: objects.elasticity,
             friction_rate: objects.friction_rate,
+            surface: Surface::default(),
         };
         let id = self.world.add(BodyDef {
             compound,

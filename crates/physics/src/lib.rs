@@ -20,10 +20,10 @@
 //! ```
 //! use std::sync::Arc;
 //! use glam::DVec3;
-//! use physics::{BodyDef, Compound, MassProperties, Material, Motion, Pose, Settings, Shape, World};
+//! use physics::{BodyDef, Compound, MassProperties, Material, Motion, Pose, Settings, Shape, Surface, World};
 //!
 //! let mut world = World::new(Settings::default())?;
-//! let material = Material { elasticity: 0.7, friction_rate: 0.7 };
+//! let material = Material { elasticity: 0.7, friction_rate: 0.7, surface: Surface(0) };
 //! let mass = MassProperties { mass: 6.8, inertia: DVec3::splat(0.0274) };
 //! let floor = BodyDef {
 //!     compound: Arc::new(Compound::single(Shape::half_space(DVec3::Y)?)),
@@ -64,6 +64,7 @@ pub mod rival;
 mod shape;
 mod step;
 mod support;
+mod surface;
 mod world;
 
 pub use body::{Body, BodyDef, MassProperties, Material, Motion};
@@ -71,4 +72,5 @@ pub use compound::{Compound, Part};
 pub use pose::Pose;
 pub use response::Response;
 pub use shape::{Shape, ShapeError};
+pub use surface::{PairContact, Surface};
 pub use world::{BodyId, Effort, Impact, Settings, SettingsError, World};

@@ -18,15 +18,24 @@ pub enum Response {
     /// faster than it came; the separating speed is limited to the approach speed. Both only lose energy.
     #[default]
     Guarded,
+    /// Restitution with a cone of friction: the physical reference that the other two are judged against.
+    ///
+    /// The impulse is `(1+e) F00 + s (F01 - F00)` with the largest share s of 0 to 1 that keeps it in the cone
+    /// |F_t| <= mu F_n (A. Chatterjee and A. Ruina, J. Appl. Mech. 65, 1998, with e_t = 0). `F01 - F00` is
+    /// K-orthogonal to the normal: the bodies part with e times the approach speed whatever the friction does, and
+    /// both terms lose energy by themselves.
+    Coulomb,
 }
 
-/// Elasticity and friction rate of a pair: the products of the two objects' coefficients (§2.2).
+/// Coefficients of a pair.
+///
+/// Under the paper's laws the products of the two objects' coefficients (§2.2), under Coulomb's those of the table.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coefficients {
-    /// Elasticity, 0 to 1.
+    /// Elasticity, or restitution, 0 to 1.
     pub elasticity: f64,
-    /// Friction rate, 0 to 1.
-    pub friction_rate: f64,
+    /// Friction rate, 0 to 1; under Coulomb's law the coefficient of friction, 0 or more.
+    pub friction: f64,
 }
 
 /// One body's share of `K`: `1/m - [r] I^-1 [r]` at the arm `r` from its centre of mass [1/kg].
@@ -46,7 +55,7 @@ pub fn compliance(inv_mass: f64, inv_inertia: &DMat3, arm: DVec3) -> DMat3 {
 /// no coefficients from 0 to 1 ever add energy.
 pub fn impulse(response: Response, pair: Coefficients, n: DVec3, dv: DVec3, k: &DMat3) -> DVec3 {
     let approach = n.dot(dv);
-    let (e, mu) = (pair.elasticity, pair.friction_rate);
+    let (e, mu) = (pair.elasticity, pair.friction);
     if approach <= 0.0 {
         return DVec3::ZERO;
     }
@@ -56,13 +65,31 @@ pub fn impulse(response: Response, pair: Coefficients, n: DVec3, dv: DVec3, k: &
     if mu == 0.0 {
         return smooth;
     }
-    let rough = rough_impulse(response, e, n, dv, &k.inverse());
-    let mu = match response {
-        Response::UnoSlater => mu,
-        Response::Guarded => rate_without_pull(mu, smooth.dot(n), rough.dot(n)),
+    let inverse = k.inverse();
+    if response == Response::Coulomb {
+        let rub = -(inverse * dv) - f00;
+        return smooth + rub * share_in_cone(mu, -smooth.dot(n), n, rub);
+    }
+    let rough = rough_impulse(response, e, n, dv, &inverse);
+    let mu = if response == Response::Guarded {
+        rate_without_pull(mu, smooth.dot(n), rough.dot(n))
+    } else {
+        mu
     };
     // Eq. (9), gathered by friction rate: (1-mu) [(1-e) F00 + e F10] + mu [(1-e) F01 + e F11].
     smooth * (1.0 - mu) + rough * mu
+}
+
+/// The largest share of `rub` that, added to the pressing impulse `pressed` [N s], stays in the cone of friction.
+fn share_in_cone(mu: f64, pressed: f64, n: DVec3, rub: DVec3) -> f64 {
+    let pull = rub.dot(n);
+    // |s rub_t| <= mu (pressed - s pull)
+    let demand = (rub - n * pull).length() + mu * pull;
+    if demand <= mu * pressed {
+        1.0
+    } else {
+        mu * pressed / demand
+    }
 }
 
 /// `(1-e) F01 + e F11`, the rough end of Eq. (9).

@@ -9,6 +9,7 @@ use crate::response::Response;
 use crate::step::near::Broad;
 use crate::step::pairs::Pairs;
 use crate::step::scratch::Scratch;
+use crate::surface::{PairContact, PairTable, Surface};
 
 /// Constants of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +26,8 @@ pub struct Settings {
     pub friction_reference_s: f64,
     /// Whether bodies at rest are skipped until something touches them.
     pub sleeping: bool,
+    /// Coefficients of pairs that [`World::set_pair`] has not named; `Response::Coulomb` alone reads them.
+    pub contact: PairContact,
 }
 
 impl Default for Settings {
@@ -36,6 +39,10 @@ impl Default for Settings {
             iteration_cap: 20,
             friction_reference_s: 1.0 / 60.0,
             sleeping: true,
+            contact: PairContact {
+                restitution: 0.5,
+                friction: 0.2,
+            },
         }
     }
 }
@@ -55,6 +62,9 @@ pub enum SettingsError {
     /// The reference interval must be positive and finite.
     #[error("friction_reference_s must be a positive time in seconds, not {0}")]
     FrictionReference(f64),
+    /// Restitution lies between 0 and 1, friction is positive or zero.
+    #[error("a pair needs a restitution from 0 to 1 and a friction coefficient of 0 or more, not {} and {}", .0.restitution, .0.friction)]
+    Pair(PairContact),
 }
 
 /// A body's name in its world; stale after the body is removed.
@@ -98,6 +108,7 @@ pub struct Effort {
 #[derive(Clone, Debug)]
 pub struct World {
     pub(crate) settings: Settings,
+    pub(crate) contacts: PairTable,
     pub(crate) bodies: Vec<Body>,
     /// Per slot: how often it was reused, and whether a body lives in it.
     generations: Vec<(u32, bool)>,
@@ -120,7 +131,7 @@ impl World {
     /// An empty world.
     ///
     /// # Errors
-    /// On a step rate, gravity, cap or reference interval that cannot be used.
+    /// On a step rate, gravity, cap, reference interval or pair that cannot be used.
     pub fn new(settings: Settings) -> Result<World, SettingsError> {
         let positive = |x: f64| x > 0.0 && x.is_finite();
         if !positive(settings.step_hz) {
@@ -137,8 +148,12 @@ impl World {
                 settings.friction_reference_s,
             ));
         }
+        if !settings.contact.is_valid() {
+            return Err(SettingsError::Pair(settings.contact));
+        }
         Ok(World {
             settings,
+            contacts: PairTable::new(settings.contact),
             bodies: Vec::new(),
             generations: Vec::new(),
             vacant: 0,
@@ -157,6 +172,23 @@ impl World {
     /// The constants it runs with.
     pub fn settings(&self) -> &Settings {
         &self.settings
+    }
+
+    /// Sets how two surfaces meet under `Response::Coulomb`, either way round.
+    ///
+    /// # Errors
+    /// On a restitution outside 0 to 1 and on a friction coefficient that is negative or not finite.
+    pub fn set_pair(
+        &mut self,
+        a: Surface,
+        b: Surface,
+        pair: PairContact,
+    ) -> Result<(), SettingsError> {
+        if !pair.is_valid() {
+            return Err(SettingsError::Pair(pair));
+        }
+        self.contacts.set(a, b, pair);
+        Ok(())
     }
 
     /// Adds a body. A state or mass that is not finite freezes the body where it is instead of failing later.

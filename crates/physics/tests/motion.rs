@@ -5,7 +5,7 @@ mod support;
 use std::sync::Arc;
 
 use glam::DVec3;
-use physics::{Compound, Material, Motion, Pose, Response, Settings, Shape, World};
+use physics::{Compound, Material, Motion, PairContact, Pose, Response, Settings, Shape, World};
 use support::*;
 
 fn floor(world: &mut World, m: Material) {
@@ -323,4 +323,43 @@ fn axisymmetric_flight_is_exact_and_general_flight_keeps_its_constants() {
     }
     assert_eq!(world.body(id).angular_momentum(), l);
     assert_eq!(flips, 12, "Dzhanibekov flips in a minute, hard case 1.2");
+}
+
+/// Hard case 3.6: t = 2 v0 / (7 mu g), v = 5/7 v0, x = 12 v0^2 / (49 mu g), then rolling without loss.
+#[test]
+fn ball_skids_under_coulomb_until_it_rolls_and_then_keeps_its_speed() {
+    for mu in [0.04, 0.12, 0.25] {
+        let mut world = World::new(Settings {
+            response: Response::Coulomb,
+            contact: PairContact {
+                restitution: 0.5,
+                friction: mu,
+            },
+            ..Settings::default()
+        })
+        .unwrap();
+        let m = material(1.0, 1.0);
+        floor(&mut world, m);
+        let mut def = ball(m, DVec3::new(0.0, BALL_RADIUS, 0.0));
+        def.mass.inertia = DVec3::splat(0.4 * def.mass.mass * BALL_RADIUS * BALL_RADIUS);
+        def.linear_velocity = DVec3::X * 8.0;
+        let id = world.add(def);
+        let slip = |world: &World| {
+            let body = world.body(id);
+            body.linear_velocity().x + body.angular_velocity().z * BALL_RADIUS
+        };
+        while slip(&world) > 1e-9 {
+            world.step();
+        }
+        let (want_t, want_x) = (16.0 / (7.0 * mu * 9.81), 12.0 * 64.0 / (49.0 * mu * 9.81));
+        let x = world.body(id).pose().position.x;
+        assert!((world.time() - want_t).abs() < 1.0 / 720.0 + 1e-9);
+        assert!((x - want_x).abs() < 5.72 / 720.0, "{x} m, not {want_x}");
+        let speed = world.body(id).linear_velocity().x;
+        assert!((speed - 8.0 * 5.0 / 7.0).abs() < 1e-9, "{speed}");
+        for _ in 0..720 * 3 {
+            world.step();
+        }
+        assert!((world.body(id).linear_velocity().x - speed).abs() < 1e-9);
+    }
 }

@@ -7,7 +7,7 @@ use physics::Response;
 use physics::response::{Coefficients, compliance, impulse};
 use support::Random;
 
-const BOTH: [Response; 2] = [Response::UnoSlater, Response::Guarded];
+const ALL: [Response; 3] = [Response::UnoSlater, Response::Guarded, Response::Coulomb];
 
 /// A random eccentric collision: normal, approaching relative velocity, `K`.
 fn collision(random: &mut Random) -> (DVec3, DVec3, DMat3) {
@@ -23,10 +23,10 @@ fn collision(random: &mut Random) -> (DVec3, DVec3, DMat3) {
     (n, if dv.dot(n) < 0.0 { -dv } else { dv }, k)
 }
 
-fn pair(elasticity: f64, friction_rate: f64) -> Coefficients {
+fn pair(elasticity: f64, friction: f64) -> Coefficients {
     Coefficients {
         elasticity,
-        friction_rate,
+        friction,
     }
 }
 
@@ -37,7 +37,7 @@ fn energy_change(f: DVec3, dv: DVec3, k: DMat3) -> f64 {
 #[test]
 fn no_collision_adds_energy_and_every_one_separates() {
     let mut random = Random(88172645463325252);
-    for response in BOTH {
+    for response in ALL {
         for _ in 0..100_000 {
             let (n, dv, k) = collision(&mut random);
             let (e, mu) = (random.next().abs(), random.next().abs());
@@ -78,6 +78,27 @@ fn guarded_never_pulls_and_never_hops_where_the_paper_does() {
         "the paper's law pulls in some of these: {pulls}"
     );
     assert!(hops > 100, "the paper's law hops in some of these: {hops}");
+}
+
+#[test]
+fn coulomb_keeps_restitution_and_cone_and_sticks_where_the_cone_is_wide() {
+    let mut random = Random(31);
+    let (mut stuck, mut slid) = (0, 0);
+    for _ in 0..50_000 {
+        let (n, dv, k) = collision(&mut random);
+        let (e, mu) = (random.next().abs(), 2.0 * random.next().abs());
+        let f = impulse(Response::Coulomb, pair(e, mu), n, dv, &k);
+        let (pressed, along) = (-f.dot(n), (f - n * f.dot(n)).length());
+        let parting = -n.dot(dv + k * f);
+        assert!((parting - e * n.dot(dv)).abs() < 1e-9, "e {e} mu {mu}");
+        assert!(pressed >= 0.0 && along <= mu * pressed * (1.0 + 1e-12));
+        // Sticking is what brings the slip to rest while they press, F01, and e F00 more while they part.
+        let f00 = n * (-n.dot(dv) / n.dot(k * n));
+        let grips = (f - (f00 * e - k.inverse() * dv)).length() < 1e-9 * (1.0 + f.length());
+        assert!(grips || along >= mu * pressed * (1.0 - 1e-9));
+        (stuck, slid) = (stuck + i32::from(grips), slid + i32::from(!grips));
+    }
+    assert!(stuck > 5000 && slid > 5000, "{stuck} stuck, {slid} slid");
 }
 
 #[test]
@@ -126,6 +147,13 @@ fn sphere_on_a_plane_meets_the_closed_forms() {
     assert!(close(after(0.0, 0.0).x, 8.0) && close(after(0.0, 0.0).y, 0.0));
     assert!(close(after(1.0, 0.0).x, 8.0) && close(after(1.0, 0.0).y, 1.0));
     assert!(close(after(0.0, 1.0).x, 8.0 - slip * 2.0 / 7.0));
+    let coned = |mu| {
+        let f = impulse(Response::Coulomb, pair(0.5, mu), DVec3::NEG_Y, dv, &k);
+        v + f / m
+    };
+    // Grips where mu (1 + e) v_n covers 2/7 of the slip, else loses that much along.
+    assert!(close(coned(2.0).x, 8.0 - slip * 2.0 / 7.0) && close(coned(2.0).y, 0.5));
+    assert!(close(coned(0.1).x, 8.0 - 0.1 * 1.5) && close(coned(0.1).y, 0.5));
     let f11 = after(1.0, 1.0);
     assert!(close(f11.x, 8.0 - slip * 2.0 / 7.0));
     assert!(close(f11.y, (1.0 + slip * slip * 2.0 / 7.0).sqrt()));

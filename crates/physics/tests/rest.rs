@@ -3,17 +3,21 @@
 mod support;
 
 use glam::{DQuat, DVec3};
-use physics::{Pose, Response, Settings, World};
+use physics::{PairContact, Pose, Response, Settings, World};
 use support::*;
 
 #[test]
 fn a_rack_stands_awake_for_a_minute() {
     for pins in [composite_pin(), ellipsoid_pin()] {
         for (e, mu) in [(0.7, 0.7), (1.0, 0.0), (0.7, 0.0), (1.0, 1.0), (0.0, 0.7)] {
-            for response in [Response::UnoSlater, Response::Guarded] {
+            for response in [Response::UnoSlater, Response::Guarded, Response::Coulomb] {
                 let settings = Settings {
                     sleeping: false,
                     response,
+                    contact: PairContact {
+                        restitution: e,
+                        friction: mu,
+                    },
                     ..Settings::default()
                 };
                 let (mut world, ids) = alley(settings, &pins, material(e, mu));

@@ -2,7 +2,7 @@
 
 mod support;
 
-use physics::{Response, Settings};
+use physics::{PairContact, Response, Settings};
 use support::*;
 
 /// Largest part of the start's energy by which a step may raise it.
@@ -30,7 +30,11 @@ fn throw_with_all_elasticities(i: usize, offset: f64) {
     for (j, elasticity) in VALUES.into_iter().enumerate() {
         let m = material(elasticity, VALUES[(i + j) % 4]);
         let settings = Settings {
-            response: [Response::Guarded, Response::UnoSlater][(i / 4) % 2],
+            response: [Response::Guarded, Response::UnoSlater, Response::Coulomb][(i / 4) % 3],
+            contact: PairContact {
+                restitution: elasticity,
+                friction: VALUES[(i + j) % 4],
+            },
             ..Settings::default()
         };
         let (mut world, ids) = alley(settings, &pins[(i + j / 2) % 2], m);

@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use crate::compound::Compound;
 use crate::pose::Pose;
+use crate::surface::Surface;
 
 /// Mass and principal moments; properties of the object, not of the shape that stands in for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,13 +25,15 @@ impl MassProperties {
     }
 }
 
-/// The paper's coefficients of one object; a pair of objects uses the products (§2.2).
+/// The paper's coefficients of one object, of which a pair uses the products (§2.2), and what Coulomb's law goes by.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
     /// Elasticity, 0 to 1.
     pub elasticity: f64,
     /// Friction rate as the paper defines it, 0 to 1; not a Coulomb coefficient.
     pub friction_rate: f64,
+    /// Its row in the table of the world's pairs, [`crate::World::set_pair`]; read by `Response::Coulomb` alone.
+    pub surface: Surface,
 }
 
 /// Who moves a body.

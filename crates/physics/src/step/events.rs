@@ -6,7 +6,7 @@ use super::RELEASE;
 use super::pairs::Key;
 use super::scratch::Answer;
 use super::search::Event;
-use super::touch::{Base, Touch, coefficients};
+use super::touch::{Base, Touch};
 use crate::body::Body;
 use crate::response::{Coefficients, Response, impulse};
 use crate::world::{Impact, World};
@@ -208,13 +208,13 @@ impl World {
     fn strike(&mut self, touch: &Touch, elastic: bool) {
         let slip = touch.slip(&self.bodies);
         let approach = touch.normal.dot(slip);
-        let mut pair = coefficients(&self.bodies[touch.a], &self.bodies[touch.b]);
+        let mut pair = self.coefficients(touch.a, touch.b);
         let worn = |slot: usize| self.bodies[slot].blows >= ELASTIC_BLOWS;
         if approach < self.resting_speed() || !elastic || worn(touch.a) || worn(touch.b) {
             // A slow touch is the beginning of a lasting contact, and that has a friction of its own.
             pair = Coefficients {
                 elasticity: 0.0,
-                friction_rate: 0.0,
+                friction: 0.0,
             };
         }
         let response: Response = self.settings.response;

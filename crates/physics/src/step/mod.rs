@@ -6,9 +6,11 @@ pub(crate) mod scratch;
 
 mod approach;
 mod events;
+mod grip;
 mod islands;
 mod queue;
 mod rest;
+mod row;
 mod search;
 mod sleep;
 mod solve;

@@ -12,12 +12,14 @@
 use glam::DVec3;
 
 use super::RELEASE;
+use super::grip::Friction;
 use super::pairs::{Contact, Key};
+use super::row::{Mover, Row};
 use super::scratch::Carry;
-use super::solve::{Mover, Row, group};
-use super::touch::{Touch, coefficients};
+use super::solve::group;
+use super::touch::Touch;
 use crate::body::Motion;
-use crate::response::friction_rate_per_step;
+use crate::response::{Response, friction_rate_per_step};
 use crate::world::World;
 
 /// Depth that a lasting contact keeps [m]; deeper ones are pushed out slowly.
@@ -164,23 +166,32 @@ impl World {
 
     /// Makes the contacts ready for a stretch of `span` seconds.
     fn rows(&self, touches: &[Touch], room: &mut Carry, span: f64) {
-        let reference = self.settings.friction_reference_s;
-        let mut known: Option<(f64, f64)> = None;
+        let mut known: Option<(f64, Friction)> = None;
         for touch in touches {
-            let pair = coefficients(&self.bodies[touch.a], &self.bodies[touch.b]);
+            let coefficient = self.coefficients(touch.a, touch.b).friction;
             // Most contacts of a scene share their friction rate: the power is taken once for all in a row.
-            let rate = match known {
-                Some((rate, per_step)) if rate == pair.friction_rate => per_step,
-                _ => friction_rate_per_step(pair.friction_rate, 0.5 * span, reference),
+            let friction = match known {
+                Some((same, friction)) if same == coefficient => friction,
+                _ => self.friction(coefficient, 0.5 * span),
             };
-            known = Some((pair.friction_rate, rate));
+            known = Some((coefficient, friction));
             let numbers = (
                 room.numbers[touch.a] as usize,
                 room.numbers[touch.b] as usize,
             );
             let allowed = self.allowed_approach(touch, span);
-            let row = Row::new(*touch, numbers, &room.movers, allowed, rate);
+            let row = Row::new(*touch, numbers, &room.movers, allowed, friction);
             room.rows.push(row);
+        }
+    }
+
+    /// What a pair's coefficient means for contacts that last, over a time of `span` seconds.
+    fn friction(&self, coefficient: f64, span: f64) -> Friction {
+        let reference = self.settings.friction_reference_s;
+        match self.settings.response {
+            _ if coefficient == 0.0 => Friction::None,
+            Response::Coulomb => Friction::Cone(coefficient),
+            _ => Friction::Rate(friction_rate_per_step(coefficient, span, reference)),
         }
     }
 

@@ -4,8 +4,8 @@ use std::collections::BinaryHeap;
 
 use super::islands::Islands;
 use super::pairs::Contact;
+use super::row::{Mover, Row};
 use super::search::Event;
-use super::solve::{Mover, Row};
 use super::touch::Touch;
 
 /// Lists that are empty between steps; only their room is kept.

@@ -7,7 +7,7 @@ use crate::body::Body;
 use crate::compound::Part;
 use crate::pose::Pose;
 use crate::query::{self, Limits, Placed, Separation};
-use crate::response::{Coefficients, compliance};
+use crate::response::{Coefficients, Response, compliance};
 use crate::shape::Kind;
 use crate::world::World;
 
@@ -175,15 +175,23 @@ impl Touch {
     }
 }
 
-/// The pair's coefficients: products of the objects' (§2.2).
-pub(crate) fn coefficients(a: &Body, b: &Body) -> Coefficients {
-    Coefficients {
-        elasticity: a.material.elasticity * b.material.elasticity,
-        friction_rate: a.material.friction_rate * b.material.friction_rate,
-    }
-}
-
 impl World {
+    /// A pair's coefficients: products of the objects' (§2.2), or Coulomb's from his table.
+    pub(crate) fn coefficients(&self, a: usize, b: usize) -> Coefficients {
+        let (a, b) = (&self.bodies[a].material, &self.bodies[b].material);
+        if self.settings.response == Response::Coulomb {
+            let pair = self.contacts.get(a.surface, b.surface);
+            return Coefficients {
+                elasticity: pair.restitution,
+                friction: pair.friction,
+            };
+        }
+        Coefficients {
+            elasticity: a.elasticity * b.elasticity,
+            friction: a.friction_rate * b.friction_rate,
+        }
+    }
+
     pub(crate) fn limits(&self) -> Limits {
         Limits {
             iteration_cap: self.settings.iteration_cap,

@@ -38,6 +38,7 @@ impl Flight {
             material: Material {
                 elasticity: 1.0,
                 friction_rate: 0.0,
+                surface: Default::default(),
             },
             pose: self.pose,
             linear_velocity: self.velocity,

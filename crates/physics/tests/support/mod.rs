@@ -8,7 +8,8 @@ use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
 use physics::{
-    BodyDef, BodyId, Compound, MassProperties, Material, Motion, Pose, Settings, Shape, World,
+    BodyDef, BodyId, Compound, MassProperties, Material, Motion, Pose, Settings, Shape, Surface,
+    World,
 };
 
 /// Height of the pin's centre of mass above its base [m].
@@ -52,6 +53,7 @@ pub fn material(elasticity: f64, friction_rate: f64) -> Material {
     Material {
         elasticity,
         friction_rate,
+        surface: Surface::default(),
     }
 }
 

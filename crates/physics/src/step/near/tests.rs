@@ -61,6 +61,7 @@ impl Random {
             material: Material {
                 elasticity: 1.0,
                 friction_rate: 0.0,
+                surface: crate::surface::Surface::default(),
             },
             pose,
             linear_velocity: DVec3::ZERO,
