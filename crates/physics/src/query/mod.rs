@@ -9,6 +9,7 @@
 //! (`bundle`, `polish`), and a growing polytope proves an overlap's depth (`expand`).
 
 mod bounds;
+mod boxes;
 mod bundle;
 mod closed;
 mod cores;

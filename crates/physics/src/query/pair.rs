@@ -51,31 +51,25 @@ impl<A: Core, B: Core> Pair<A, B> {
         }
     }
 
+    /// The support points along n.
     #[inline(always)]
     pub fn tips(&self, n: DVec3) -> Tips {
-        Tips {
-            a: self.a.tip(n),
-            b: self.b.tip(n),
-        }
+        self.tips_held(n, 0, 0)
     }
 
+    /// The support points along n on the given `sides` of all circles, whether or not n lies there.
     #[inline(always)]
     pub fn tips_on(&self, n: DVec3, sides: u8) -> Tips {
-        Tips {
-            a: self.a.tip_on(n, sides & 7),
-            b: self.b.tip_on(n, sides >> OF_B),
-        }
+        self.tips_held(n, !0, sides)
     }
 
     /// The support points along n, on the given `sides` of those circles that the search is `held` to.
     #[inline(always)]
     pub fn tips_held(&self, n: DVec3, held: u8, sides: u8) -> Tips {
-        let tips = self.tips(n);
-        let wanted = tips.sides() & !held | sides & held;
-        if tips.sides() == wanted {
-            tips
-        } else {
-            self.tips_on(n, wanted)
+        let of_a = (1 << OF_B) - 1;
+        Tips {
+            a: self.a.tip_held(n, held & of_a, sides & of_a),
+            b: self.b.tip_held(n, held >> OF_B, sides >> OF_B),
         }
     }
 

@@ -6,7 +6,7 @@ use super::cores::{Core, CuboidCore, EllipsoidCore, PointCore, RevolutionCore, T
 use super::pair::Pair;
 use super::search::Goal;
 use super::starts::{self, Found};
-use super::{Limits, Placed, Separation, bounds, gap_along, simplex};
+use super::{Limits, Placed, Separation, bounds, boxes, gap_along, simplex};
 use crate::shape::Kind;
 
 /// Order of the families: a pair is searched with the lower one first, so that each has one search.
@@ -46,12 +46,18 @@ pub(super) fn search(a: &Placed, b: &Placed, start: Option<DVec3>, limits: Limit
     if first > second {
         return search(b, a, start.map(|n| -n), limits).swapped();
     }
-    let task = Task {
+    let mut task = Task {
         a,
         b,
         start,
         limits,
     };
+    if let (Kind::Cuboid { half }, Kind::Cuboid { half: other }) = (&a.shape.kind, &b.shape.kind) {
+        match boxes::separation((a, *half), (b, *other), limits.enough) {
+            Ok(answer) => return answer,
+            Err(n) => task.start = Some(n),
+        }
+    }
     match &a.shape.kind {
         Kind::Sphere { .. } => task.with_b(PointCore),
         Kind::Capsule {

@@ -71,9 +71,6 @@ pub(super) fn from_nothing<A: Core, B: Core>(pair: &Pair<A, B>, goal: Goal) -> F
     }
     let mut candidates = Candidates::new();
     candidates.collect(pair);
-    if !A::CURVED && !B::CURVED {
-        return candidates.best_corner(pair, first);
-    }
     candidates.climb(pair, first, goal)
 }
 
@@ -134,17 +131,14 @@ impl Candidates {
         }
         for i in (0..2 * OF_B).filter(|i| Pair::<A, B>::has_circle(*i)) {
             let circle = &pair.circle(i);
-            if A::CURVED || B::CURVED {
-                let side = || {
-                    circle.axis * circle.height
-                        + circle.axis.any_orthonormal_pair().0 * circle.radius
-                };
-                let n = circle.nearest(pair.offset).unwrap_or_else(side);
-                self.put(pair, n, State::Circle(i));
-                for n in if i < OF_B { &ends_b } else { &ends_a }.iter().flatten() {
-                    if let Some(n) = circle.nearest(*n) {
-                        self.put(pair, n, State::Circle(i));
-                    }
+            let side = || {
+                circle.axis * circle.height + circle.axis.any_orthonormal_pair().0 * circle.radius
+            };
+            let n = circle.nearest(pair.offset).unwrap_or_else(side);
+            self.put(pair, n, State::Circle(i));
+            for n in if i < OF_B { &ends_b } else { &ends_a }.iter().flatten() {
+                if let Some(n) = circle.nearest(*n) {
+                    self.put(pair, n, State::Circle(i));
                 }
             }
             for j in (i + 1..2 * OF_B).filter(|j| Pair::<A, B>::has_circle(*j)) {
@@ -178,28 +172,6 @@ impl Candidates {
         } else {
             self.put(pair, p, State::Corner(i, j));
             self.put(pair, q, State::Corner(i, j));
-        }
-    }
-
-    /// Overlapping polytopes: every maximum of s is a corner, and all corners are candidates.
-    fn best_corner<A: Core, B: Core>(&self, pair: &Pair<A, B>, first: Summit) -> Found {
-        let mut best = first;
-        for &(s, n, state) in &self.list[..self.count] {
-            if matches!(state, State::Corner(..)) && (s > best.s || !best.converged) {
-                let (a, b) = pair.line_up(n);
-                best = Summit {
-                    n,
-                    s,
-                    points: (a, b),
-                    converged: true,
-                    ..best
-                };
-            }
-        }
-        Found {
-            summit: best,
-            capped: !best.converged,
-            local: false,
         }
     }
 

@@ -21,17 +21,12 @@ impl CuboidCore {
 impl Core for CuboidCore {
     const CIRCLES: usize = 3;
     const DISCS: bool = false;
-    const CURVED: bool = false;
-    const SMALL_CIRCLES: bool = false;
 
     #[inline(always)]
-    fn tip(&self, n: DVec3) -> Tip {
+    fn tip_held(&self, n: DVec3, held: u8, sides: u8) -> Tip {
         let above = |i: usize| u8::from(n.dot(self.axes[i]) > 0.0) << i;
-        self.tip_on(n, above(0) | above(1) | above(2))
-    }
-
-    #[inline(always)]
-    fn tip_on(&self, _: DVec3, sides: u8) -> Tip {
+        let natural = above(0) | above(1) | above(2);
+        let sides = natural & !held | sides & held;
         let corner = |i: usize| {
             let half = if sides >> i & 1 == 1 {
                 self.half[i]

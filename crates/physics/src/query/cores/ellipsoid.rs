@@ -34,11 +34,9 @@ pub(super) fn quadric(square: &Symmetric, q: DVec3, inverse: f64, u: DVec3, w: D
 impl Core for EllipsoidCore {
     const CIRCLES: usize = 0;
     const DISCS: bool = false;
-    const CURVED: bool = true;
-    const SMALL_CIRCLES: bool = false;
 
     #[inline(always)]
-    fn tip(&self, n: DVec3) -> Tip {
+    fn tip_held(&self, n: DVec3, _held: u8, _sides: u8) -> Tip {
         let w = self.square.times(n);
         let inverse = 1.0 / n.dot(w).sqrt();
         Tip {

@@ -152,20 +152,15 @@ pub(super) trait Core {
     const CIRCLES: usize;
     /// Whether the core ends in flat discs.
     const DISCS: bool;
-    /// Whether any part of the surface is curved.
-    const CURVED: bool;
-    /// Whether a circle may be small: a great arc can then cross it twice.
-    const SMALL_CIRCLES: bool;
+
+    /// Support point along the unit normal `n`; of the circles that are `held` (bits) on the given `sides`, whether or
+    /// not n lies there.
+    fn tip_held(&self, n: DVec3, held: u8, sides: u8) -> Tip;
 
     /// Support point along the unit normal `n`.
-    fn tip(&self, n: DVec3) -> Tip;
-
-    /// Support point of the part of the surface on the given `sides`, whether or not n lies there.
-    ///
-    /// Cores without kinks have one part only: the one in charge at n.
     #[inline(always)]
-    fn tip_on(&self, n: DVec3, _sides: u8) -> Tip {
-        self.tip(n)
+    fn tip(&self, n: DVec3) -> Tip {
+        self.tip_held(n, 0, 0)
     }
 
     /// Derivative of the support point `tip` by n within the tangent plane of u and w: uu, uw, ww [m].
@@ -184,6 +179,12 @@ pub(super) trait Core {
     #[inline(always)]
     fn circle(&self, _index: usize) -> Circle {
         Circle::NONE
+    }
+
+    /// Whether a circle is small: a great arc can then cross it twice.
+    #[inline(always)]
+    fn has_small_circle(&self) -> bool {
+        false
     }
 
     /// The disc at the end that tips on these `sides` belong to.
@@ -210,11 +211,9 @@ pub(super) struct PointCore;
 impl Core for PointCore {
     const CIRCLES: usize = 0;
     const DISCS: bool = false;
-    const CURVED: bool = false;
-    const SMALL_CIRCLES: bool = false;
 
     #[inline(always)]
-    fn tip(&self, _: DVec3) -> Tip {
+    fn tip_held(&self, _: DVec3, _held: u8, _sides: u8) -> Tip {
         Tip {
             point: DVec3::ZERO,
             sides: 0,

@@ -44,21 +44,14 @@ impl RevolutionCore<'_> {
 impl Core for RevolutionCore<'_> {
     const CIRCLES: usize = 1;
     const DISCS: bool = true;
-    const CURVED: bool = true;
-    const SMALL_CIRCLES: bool = true;
 
     #[inline(always)]
-    fn tip(&self, n: DVec3) -> Tip {
+    fn tip_held(&self, n: DVec3, held: u8, sides: u8) -> Tip {
         let (axial, across, length) = self.split(n);
         let p = self.profile;
-        let side = usize::from(axial * p.mantle.0 > length * p.mantle.1);
-        self.disc_tip(across, length, side)
-    }
-
-    #[inline(always)]
-    fn tip_on(&self, n: DVec3, sides: u8) -> Tip {
-        let (_, across, length) = self.split(n);
-        self.disc_tip(across, length, usize::from(sides & 1))
+        let natural = u8::from(axial * p.mantle.0 > length * p.mantle.1);
+        let side = natural & !held | sides & held & 1;
+        self.disc_tip(across, length, usize::from(side & 1))
     }
 
     /// A disc's support point moves around its rim only: `r / |n across| e e^T`, e along the rim.
@@ -85,6 +78,11 @@ impl Core for RevolutionCore<'_> {
             radius: self.profile.mantle.0,
             jump: self.profile.slant,
         }
+    }
+
+    #[inline(always)]
+    fn has_small_circle(&self) -> bool {
+        self.profile.mantle.1 != 0.0
     }
 
     #[inline(always)]

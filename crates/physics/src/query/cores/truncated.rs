@@ -45,11 +45,9 @@ impl TruncatedCore {
 impl Core for TruncatedCore {
     const CIRCLES: usize = 0;
     const DISCS: bool = true;
-    const CURVED: bool = true;
-    const SMALL_CIRCLES: bool = false;
 
     #[inline(always)]
-    fn tip(&self, n: DVec3) -> Tip {
+    fn tip_held(&self, n: DVec3, _held: u8, _sides: u8) -> Tip {
         let w = self.square.times(n);
         let inverse = 1.0 / n.dot(w).sqrt();
         let point = w * inverse;

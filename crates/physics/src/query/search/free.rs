@@ -9,6 +9,8 @@ use super::{LINED_UP, ROUNDING, Search, State};
 
 /// Longest step on the tangent plane; on the sphere the way to its end is an arc of 63 degrees.
 const LONGEST: f64 = 2.0;
+/// A step as short as this may be the last [rad].
+pub(super) const SMALL: f64 = 2e-3;
 /// Step along directions in which s is not concave [rad].
 pub(super) const STRIDE: f64 = 0.7;
 
@@ -177,21 +179,25 @@ impl<A: Core, B: Core> Search<'_, A, B> {
             left,
         };
         match self.walk(&path, rise, 1.0) {
-            End::Kink { index, n, sides } => {
-                self.hold(State::Circle(index), n, sides);
+            End::Kink { index, n, below } => {
+                self.hold(State::Circle(index), n, below);
                 false
             }
             End::Open { x, n, tips, whole } => {
-                let small = newton && whole && step.length_squared() * x * x < 1e-9;
-                let last = small && tips.sides() == self.tips.sides();
+                let step_squared = step.length_squared() * x * x;
+                let small = newton && whole && step_squared < SMALL * SMALL;
+                let same = small && tips.sides() == self.tips.sides();
+                let before = self.across_squared();
                 self.accept(n, tips);
-                if !last {
-                    return false;
-                }
-                let d = self.pair.between(&self.tips);
-                self.is_narrow((d - self.n * self.s).length_squared())
+                same && self.was_last(step_squared, before, self.across_squared())
             }
         }
+    }
+
+    /// Squared offset of the closest points across n.
+    #[inline(always)]
+    fn across_squared(&self) -> f64 {
+        (self.pair.between(&self.tips) - self.n * self.s).length_squared()
     }
 }
 

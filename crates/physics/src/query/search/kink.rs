@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::super::cores::Core;
 use super::super::path::Along;
-use super::free::STRIDE;
+use super::free::{SMALL, STRIDE};
 use super::walk::End;
 use super::{LINED_UP, Search, State, held};
 
@@ -58,28 +58,27 @@ impl<A: Core, B: Core> Search<'_, A, B> {
             End::Kink {
                 index: other,
                 n,
-                sides,
+                below,
             } => {
-                self.hold(State::Corner(index, other), n, sides);
+                self.hold(State::Corner(index, other), n, below);
                 false
             }
             End::Open { x, n, tips, whole } => {
-                let small = bend > 0.0 && x * x < 1e-9 && whole && excess == 0.0;
-                let last = small && tips.sides() == self.tips.sides();
+                let small = bend > 0.0 && whole && excess == 0.0 && x * x < SMALL * SMALL;
+                let same = small && tips.sides() == self.tips.sides();
                 self.accept(n, tips);
-                last && self.is_lined_up_on(index)
+                same && self.was_last(x * x, along * along, self.across_on(index))
             }
         }
     }
 
-    /// Whether the closest points line up somewhere on the jump of the circle `index`.
+    /// Squared offset across n of the closest points, somewhere on the jump of the circle `index`.
     #[inline(always)]
-    fn is_lined_up_on(&self, index: usize) -> bool {
+    fn across_on(&self, index: usize) -> f64 {
         let d = self.pair.between(&self.tips);
         let jump = self.jump(index);
         let share = (jump.dot(d) / jump.length_squared()).clamp(0.0, 1.0);
-        let across = d - jump * share - self.n * self.s;
-        self.is_narrow(across.length_squared())
+        (d - jump * share - self.n * self.s).length_squared()
     }
 
     /// The jump of the support point across the circle `index`, from below to above, at n.

@@ -19,6 +19,10 @@ use super::pair::{OF_B, Pair, Tips};
 const NARROW: f64 = 1e-8;
 /// Closest points are lined up when this far apart across n, in units of the pair's size.
 const LINED_UP: f64 = 1e-11;
+/// Closest points that lie this far apart across n are where they would be, in units of the pair's size.
+const ALIGNED: f64 = 2e-7;
+/// What a last step leaves of the offset across n at most.
+const FELL: f64 = 1e-2;
 /// A gain below this is rounding, in units of the pair's size.
 const ROUNDING: f64 = 1e-14;
 
@@ -187,19 +191,30 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
         (d - self.n * self.n.dot(d)).length() < 1e-9 * self.pair.size
     }
 
-    /// Whether an offset across n of this squared length leaves |D| - s narrow.
+    /// Whether an offset across n of this squared length leaves |D| - s narrow and the closest points where they are.
     #[inline(always)]
     fn is_narrow(&self, across_squared: f64) -> bool {
         let narrow = self.goal.tolerance.max(NARROW * self.pair.size);
-        self.s <= 0.0 || across_squared <= narrow * narrow
+        let aligned = self.goal.tolerance.max(ALIGNED * self.pair.size);
+        across_squared <= aligned * aligned
+            && (self.s <= 0.0 || across_squared <= narrow * (narrow + 2.0 * self.s))
     }
 
-    /// Puts the search on a kink.
+    /// Whether a full Newton step that brought the squared offset across n from `before` to `after` was the last.
+    ///
+    /// What is left is the square of the step, if the offset fell as it does where that holds.
     #[inline(always)]
-    fn hold(&mut self, state: State, n: DVec3, sides: u8) {
-        self.tips = self.pair.tips_on(n, sides & !state.held());
+    fn was_last(&self, step_squared: f64, before: f64, after: f64) -> bool {
+        let left = step_squared * step_squared * self.pair.size;
+        left <= 4.0 * self.goal.tolerance && after <= FELL * FELL * before && self.is_narrow(after)
+    }
+
+    /// Puts the search on a kink, where these are the support points below it.
+    #[inline(always)]
+    fn hold(&mut self, state: State, n: DVec3, below: Tips) {
+        self.tips = below;
         self.n = n;
-        self.s = n.dot(self.pair.between(&self.tips));
+        self.s = n.dot(self.pair.between(&below));
         self.state = state;
         self.held = held(self.pair, state);
     }
@@ -216,8 +231,9 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
     /// The answer where the search stands.
     #[inline(always)]
     fn summit(self, ending: Ending) -> Summit {
-        // On a kink the search holds to one side of it; what is proven is s itself.
-        let natural = self.held == 0 && ending != Ending::Unfinished;
+        // Where kinks cross the search holds to one side of each; what is proven is s itself.
+        let one = matches!(self.state, State::Circle(_)) && self.held.count_ones() == 1;
+        let natural = (self.held == 0 || one) && ending != Ending::Unfinished;
         let s = if natural {
             self.s
         } else {

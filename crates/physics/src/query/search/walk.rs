@@ -16,8 +16,8 @@ pub(super) enum End {
         tips: Tips,
         whole: bool,
     },
-    /// On a kink that it must not cross, coming from these sides of all others.
-    Kink { index: usize, n: DVec3, sides: u8 },
+    /// On a kink that it must not cross, with the support points below it.
+    Kink { index: usize, n: DVec3, below: Tips },
 }
 
 /// What a look at the kinks on a way tells.
@@ -31,7 +31,7 @@ enum Look {
     Kink {
         index: usize,
         n: DVec3,
-        sides: u8,
+        below: Tips,
     },
 }
 
@@ -51,7 +51,7 @@ impl<A: Core, B: Core> Search<'_, A, B> {
             }
             match self.look(path, rise, x, sides ^ tips.sides()) {
                 Look::Clear => break,
-                Look::Kink { index, n, sides } => return End::Kink { index, n, sides },
+                Look::Kink { index, n, below } => return End::Kink { index, n, below },
                 Look::Shorten { x: shorter, again } => {
                     x = shorter;
                     whole = false;
@@ -81,6 +81,7 @@ impl<A: Core, B: Core> Search<'_, A, B> {
         let (pair, held) = (self.pair, self.held);
         let mut list = [(0.0, 0usize, DVec3::ZERO); 2 * OF_B];
         let mut count = 0;
+        let small = pair.a.has_small_circle() || pair.b.has_small_circle();
         for index in (0..2 * OF_B).filter(|i| crossed >> i & 1 == 1) {
             if let Some((x, n)) = path.meets(&pair.circle(index), index, end) {
                 let mut at = count;
@@ -97,7 +98,7 @@ impl<A: Core, B: Core> Search<'_, A, B> {
         let (mut from, mut slope) = (0.0, rise);
         for &(x, index, n) in list {
             let bit = 1u8 << index;
-            if A::SMALL_CIRCLES || B::SMALL_CIRCLES {
+            if small {
                 // A small circle may have been crossed twice in between: then the way there comes first.
                 let ties = list.iter().filter(|k| (k.0 - x).abs() < 1e-12);
                 let ties = ties.fold(bit, |bits, k| bits | 1 << k.1);
@@ -139,11 +140,12 @@ impl<A: Core, B: Core> Search<'_, A, B> {
         } else {
             n
         };
-        let s = n.dot(pair.between(&pair.tips_on(n, sides)));
+        let below = pair.tips_on(n, sides & !(self.held | 1 << index));
+        let s = n.dot(pair.between(&below));
         // Circles that almost touch cross in no exact normal: what is held there would not be what s is.
-        let exact = s - pair.gap(n) <= 10.0 * ROUNDING * pair.size;
+        let exact = on_one || s - pair.gap(n) <= 10.0 * ROUNDING * pair.size;
         if exact && s >= self.s - 10.0 * ROUNDING * pair.size {
-            Look::Kink { index, n, sides }
+            Look::Kink { index, n, below }
         } else {
             Look::Clear
         }
