@@ -6,6 +6,8 @@ mod assets;
 mod bad_input;
 /// Pictures of hand-set states, both eyes, against references.
 mod golden;
+/// What is hard for a rigid-body engine, against what analysis says.
+mod hard_cases;
 /// Questions to the collision detection, in JSON lines.
 mod query;
 /// A recording of the real program: what is in it, and what a replay finds.

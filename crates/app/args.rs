@@ -81,6 +81,11 @@ pub enum Command {
     /// metres. Each line is answered in its place, a bad one with the reason, and then the exit
     /// code is 1.
     Query(QueryArguments),
+    /// Try what is hard for a rigid-body engine against what analysis says.
+    ///
+    /// One line a case: verdict, time, section, name, what is right and from where, when it passes, and
+    /// what was measured; docs/hard-cases.md says more. The exit code is 1 if any fails.
+    HardCases(HardCasesArguments),
 }
 
 /// Who or what bowls.
@@ -203,6 +208,18 @@ fn tolerance(text: &str) -> Result<f64, String> {
         Ok(value) if value > 0.0 && f64::is_finite(value) => Ok(value),
         _ => Err("a tolerance is a positive number of metres".to_owned()),
     }
+}
+
+/// Arguments of `bowling hard-cases`.
+#[derive(Debug, Args)]
+pub struct HardCasesArguments {
+    /// Only the case of this name, those whose names begin so, or those of a section (3, 3.1).
+    #[arg(long, value_name = "NAME", value_parser = crate::hard_cases::known_name)]
+    pub only: Option<String>,
+
+    /// Print a JSON array instead of a table, one object a case.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Arguments of `bowling replay`.

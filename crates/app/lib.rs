@@ -1,13 +1,14 @@
 //! The `bowling` program: who bowls, what is recorded, what is drawn.
 //!
-//! Entry points: [`run`] reads the command line; [`play`], [`replay`] and [`query`] are the commands; a
-//! [`session::Session`] takes one input per displayed frame from any device.
+//! Entry points: [`run`] reads the command line; [`play`], [`replay`], [`query`] and [`hard_cases`] are the
+//! commands; a [`session::Session`] takes one input per displayed frame from any device.
 
 pub mod args;
 pub mod boundary;
 pub mod choose;
 pub mod convert;
 pub mod devices;
+pub mod hard_cases;
 pub mod journal;
 pub mod motion;
 pub mod output;
@@ -65,5 +66,6 @@ fn obey(arguments: &Arguments) -> Result<()> {
         Some(Command::Play(play)) => play::play(play, &root::find(arguments.root.as_deref())?),
         Some(Command::Replay(arguments)) => replay::replay(&arguments.folder),
         Some(Command::Query(arguments)) => query::query(arguments),
+        Some(Command::HardCases(arguments)) => hard_cases::hard_cases(arguments),
     }
 }
