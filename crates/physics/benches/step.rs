@@ -11,7 +11,17 @@ use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use physics::{Settings, World};
 use support::{alley, composite_pin, ellipsoid_pin, material, throw};
 
-const TENTH: u32 = 72;
+const TENTH: u32 = 9;
+/// Steps per second, those of a display.
+const RATE: f64 = 90.0;
+
+fn settings(sleeping: bool) -> Settings {
+    Settings {
+        step_hz: RATE,
+        sleeping,
+        ..Settings::default()
+    }
+}
 
 fn run(world: &mut World, steps: u32) {
     for _ in 0..steps {
@@ -35,24 +45,20 @@ fn steps(c: &mut Criterion) {
         (composite_pin(), "composite"),
         (ellipsoid_pin(), "ellipsoid"),
     ] {
-        let (mut world, _) = alley(Settings::default(), &pins, m);
+        let (mut world, _) = alley(settings(true), &pins, m);
         throw(&mut world, m, 0.05, 1.0, 8.0);
         // The ball is on its way, the rack untouched; then the worst tenth of a second, and the heap it leaves.
-        run(&mut world, 60);
+        run(&mut world, 8);
         bench(c, &format!("{name}/shot, first tenth"), &world);
-        run(&mut world, 300);
+        run(&mut world, 38);
         bench(c, &format!("{name}/shot, half a second later"), &world);
 
-        let awake = Settings {
-            sleeping: false,
-            ..Settings::default()
-        };
-        let (mut world, _) = alley(awake, &pins, m);
-        run(&mut world, 720);
+        let (mut world, _) = alley(settings(false), &pins, m);
+        run(&mut world, 90);
         bench(c, &format!("{name}/standing awake"), &world);
 
-        let (mut world, _) = alley(Settings::default(), &pins, m);
-        run(&mut world, 720);
+        let (mut world, _) = alley(settings(true), &pins, m);
+        run(&mut world, 90);
         bench(c, &format!("{name}/asleep"), &world);
     }
 }

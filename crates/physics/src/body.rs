@@ -56,8 +56,8 @@ pub struct Body {
     pub(crate) listed: bool,
     /// Pose after the last step that left the state finite.
     pub(crate) last_finite: Pose,
-    /// Consecutive steps at rest.
-    pub(crate) still_steps: u32,
+    /// Time at rest so far [s].
+    pub(crate) still_for: f64,
     /// Whether it could sleep, if all that it touches could.
     pub(crate) sleepy: bool,
     /// Number of touching contacts.
@@ -100,7 +100,7 @@ impl Body {
             box_until: f64::NEG_INFINITY,
             listed: false,
             last_finite: def.pose,
-            still_steps: 0,
+            still_for: 0.0,
             sleepy: false,
             contacts: 0,
             rests: false,

@@ -46,6 +46,19 @@ impl Body {
         sweep
     }
 
+    /// How fast the body turns in a way that moves its surface [rad/s].
+    pub(crate) fn turning_across(&self) -> f64 {
+        match self.compound.symmetry() {
+            Symmetry::Full => 0.0,
+            Symmetry::Axis => {
+                let axis = self.rotation * DVec3::Y;
+                let across = self.momentum - axis * axis.dot(self.momentum);
+                across.length() / self.mass.inertia.x
+            }
+            Symmetry::None => self.angular_velocity().length(),
+        }
+    }
+
     fn sweep_of_turning(&self) -> Sweep {
         let symmetry = self.compound.symmetry();
         let radius = self.compound.bounding_radius();

@@ -130,7 +130,7 @@ impl World {
         }
         self.settle_touches(touches);
         for slot in &*struck {
-            self.bodies[*slot].still_steps = 0;
+            self.bodies[*slot].still_for = 0.0;
         }
         self.join(struck, bodies, touches, t, dt);
         self.set_off(struck, touches, t, dt);

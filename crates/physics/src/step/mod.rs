@@ -1,4 +1,4 @@
-//! One fixed step: lasting contacts, then impacts in the order of time, then sleep.
+//! One fixed step, tick by tick: lasting contacts, then impacts in the order of time, then sleep.
 
 pub(crate) mod near;
 pub(crate) mod pairs;
@@ -22,40 +22,93 @@ pub(crate) use touch::place;
 
 use glam::DVec3;
 
+use self::pairs::{Contact, Key};
 use crate::world::World;
 
 /// Distance at which two bodies count as in contact [m].
 pub(crate) const CONTACT: f64 = 1e-7;
 /// A lasting contact may sink this far in a step before it is struck again [m].
 pub(crate) const SINK: f64 = 1e-5;
+/// Ticks per second of a base that rocks, and of contacts that change little.
+const FINEST: f64 = 720.0;
+const COARSEST: f64 = 180.0;
+/// How far a body with a lasting contact may turn in a tick [rad].
+const TURN: f64 = 0.04;
 /// Gap beyond which a lasting contact is given up [m].
 pub(crate) const RELEASE: f64 = 1e-5;
 
 impl World {
-    /// Advances by one fixed step of `1 / step_hz` seconds.
+    /// Advances by one fixed step of `1 / step_hz` seconds, in as many ticks as what happens in it needs.
     pub fn step(&mut self) {
-        let dt = self.dt();
         self.impacts.clear();
         self.steps += 1;
         self.awake.sort_unstable();
         if self.is_quiet() {
             return;
         }
-        self.aim_driven(dt);
+        let mut left = self.dt();
+        self.aim_driven(left);
+        while left > 0.0 {
+            let dt = self.tick(left);
+            // The last tick is all that is left, so that this ends at zero.
+            left -= dt;
+        }
+        self.dismiss();
+    }
+
+    /// Advances by one tick of at most `left` seconds; returns its length.
+    fn tick(&mut self, left: f64) -> f64 {
+        self.effort.ticks += 1;
         for slot in &self.awake {
             self.bodies[*slot as usize].acceleration = DVec3::ZERO;
         }
         self.wake_driven_neighbours();
         self.awake.sort_unstable();
-        self.rest(dt);
+        let mut lasting = std::mem::take(&mut self.scratch.aged);
+        self.gather(&mut lasting);
+        let dt = self.tick_length(&lasting, left);
+        self.rest(&lasting, dt);
+        lasting.clear();
+        self.scratch.aged = lasting;
         self.run_events(dt);
         for i in 0..self.awake.len() {
-            self.end_step(self.awake[i] as usize, dt);
+            self.end_tick(self.awake[i] as usize, dt);
         }
         if self.settings.sleeping {
             self.fall_asleep(dt);
         }
-        self.dismiss();
+        dt
+    }
+
+    /// Length of the next tick [s]: `left` in equal parts, as many as the most demanding contact asks for.
+    fn tick_length(&self, lasting: &[Contact], left: f64) -> f64 {
+        let rates = lasting.iter().map(|contact| self.tick_rate(contact.key));
+        let rate = rates.fold(0.0, f64::max);
+        let ticks = (left * rate - 1e-6).ceil();
+        if ticks > 1.0 { left / ticks } else { left }
+    }
+
+    /// Ticks per second that a lasting contact needs.
+    ///
+    /// Flight is exact however long it lasts, and so is rest. A base that tilts changes its mind about where it
+    /// stands, and a body that turns takes its contacts round with it.
+    fn tick_rate(&self, key: Key) -> f64 {
+        let tilts = self
+            .pairs
+            .known(key)
+            .is_some_and(|touch| touch.on_base && touch.base.is_none());
+        if tilts {
+            return FINEST;
+        }
+        let turning = [key.a, key.b].map(|slot| {
+            let body = &self.bodies[slot as usize];
+            if body.is_active() {
+                body.turning_across()
+            } else {
+                0.0
+            }
+        });
+        (turning[0].max(turning[1]) / TURN).clamp(COARSEST, FINEST)
     }
 
     /// Whether nothing moves and nobody is told to: a step then only counts.
@@ -97,8 +150,8 @@ impl World {
         (self.settings.gravity.length() / 360.0).max(1e-4)
     }
 
-    /// Brings a body to the end of the step; one whose state is no state any more stops where it last was.
-    pub(super) fn end_step(&mut self, slot: usize, dt: f64) {
+    /// Brings a body to the end of the tick; one whose state is no state any more stops where it last was.
+    pub(super) fn end_tick(&mut self, slot: usize, dt: f64) {
         let body = &mut self.bodies[slot];
         body.advance(dt, dt);
         body.straighten();

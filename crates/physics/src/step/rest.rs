@@ -28,11 +28,9 @@ const SLOP: f64 = 5e-6;
 const EXACT: f64 = 1e-9;
 
 impl World {
-    /// Answers all lasting contacts, and sets everybody off for the step.
-    pub(crate) fn rest(&mut self, dt: f64) {
-        let mut lasting = std::mem::take(&mut self.scratch.aged);
+    /// Answers the lasting contacts, and sets everybody off for the tick.
+    pub(crate) fn rest(&mut self, lasting: &[Contact], dt: f64) {
         let mut carried = std::mem::take(&mut self.scratch.found);
-        self.gather(&mut lasting);
         let gravity = self.settings.gravity;
         for slot in &self.awake {
             let body = &mut self.bodies[*slot as usize];
@@ -45,13 +43,12 @@ impl World {
                 body.acceleration = gravity;
             }
         }
-        self.carry_islands(&lasting, &carried, dt);
+        self.carry_islands(lasting, &carried, dt);
         for slot in &self.awake {
             self.bodies[*slot as usize].look_ahead(dt);
         }
-        lasting.clear();
         carried.clear();
-        (self.scratch.aged, self.scratch.found) = (lasting, carried);
+        self.scratch.found = carried;
     }
 
     /// Takes the bodies `carried` through a stretch of `span` seconds that begins at their clocks.
@@ -102,7 +99,7 @@ impl World {
     }
 
     /// Lasting contacts of awake bodies that have to be answered, by age; counts them per body.
-    fn gather(&mut self, lasting: &mut Vec<Contact>) {
+    pub(crate) fn gather(&mut self, lasting: &mut Vec<Contact>) {
         for slot in &self.awake {
             let slot = *slot as usize;
             let body = &mut self.bodies[slot];

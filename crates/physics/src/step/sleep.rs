@@ -13,7 +13,7 @@ impl World {
     pub(crate) fn wake(&mut self, slot: usize) {
         let body = &mut self.bodies[slot];
         body.asleep = false;
-        body.still_steps = 0;
+        body.still_for = 0.0;
         self.rouse(slot);
     }
 
@@ -50,7 +50,6 @@ impl World {
 
     /// Puts groups of touching bodies to sleep when all of them have been quiet for a while.
     pub(crate) fn fall_asleep(&mut self, dt: f64) {
-        let needed = (QUIET / dt).ceil() as u32;
         let mut restless = std::mem::take(&mut self.scratch.restless);
         for slot in &self.awake {
             let body = &mut self.bodies[*slot as usize];
@@ -59,8 +58,8 @@ impl World {
             }
             let turning = body.angular_velocity().length() * body.compound.bounding_radius();
             let quiet = body.contacts > 0 && body.linear.length() + turning < QUIET_SPEED;
-            body.still_steps = if quiet { body.still_steps + 1 } else { 0 };
-            body.sleepy = body.still_steps >= needed;
+            body.still_for = if quiet { body.still_for + dt } else { 0.0 };
+            body.sleepy = body.still_for > QUIET - 1e-9;
             if !body.sleepy {
                 restless.push(*slot);
             }
