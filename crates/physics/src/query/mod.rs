@@ -25,6 +25,7 @@ mod simplex;
 mod solve;
 mod starts;
 
+pub(crate) use flats::on_face;
 pub use manifold::{ContactPoint, Manifold, manifold};
 
 use glam::{DMat3, DVec3};

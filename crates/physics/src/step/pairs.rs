@@ -88,6 +88,16 @@ pub(crate) struct Contact {
 struct Seen {
     ways: (f64, f64),
     touch: Touch,
+    load: Load,
+}
+
+/// Force that a lasting contact carried last: where the next answer begins.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Load {
+    /// Along the normal [N].
+    pub pressed: f64,
+    /// Across it, on a, within the cone of friction [N].
+    pub rubbed: DVec3,
 }
 
 /// What a body takes part in.
@@ -266,6 +276,9 @@ impl Pairs {
             return;
         }
         part.touching = on;
+        if let Some(load) = self.load(key) {
+            *load = Load::default();
+        }
         self.formed += 1;
         for slot in [key.a, key.b] {
             let contacts = &mut self.links[slot as usize].contacts;
@@ -276,6 +289,13 @@ impl Pairs {
                 contacts.retain(|c| c.key != key);
             }
         }
+    }
+
+    /// What a contact that was seen carries.
+    pub fn load(&mut self, key: Key) -> Option<&mut Load> {
+        let place = self.part(key).seen;
+        let seen = self.seen.get_mut(place as usize)?;
+        Some(&mut seen.load)
     }
 
     /// The contact as it was seen last.
@@ -293,12 +313,13 @@ impl Pairs {
 
     /// Keeps a contact as it is seen now.
     pub fn remember(&mut self, key: Key, ways: (f64, f64), touch: Touch) {
-        let now = Seen { ways, touch };
         let place = self.part(key).seen;
         if let Some(seen) = self.seen.get_mut(place as usize) {
-            *seen = now;
+            (seen.ways, seen.touch) = (ways, touch);
             return;
         }
+        let load = Load::default();
+        let now = Seen { ways, touch, load };
         let place = match self.free_seen.pop() {
             Some(place) => {
                 self.seen[place as usize] = now;

@@ -70,6 +70,11 @@ impl World {
         room.rows.iter_mut().for_each(Row::renew);
         let passes = passes + room.answer(&self.bodies, carried.len(), kick, enough);
         self.effort.passes += u64::from(passes);
+        for row in &room.rows {
+            if let Some(load) = self.pairs.load(row.touch.key) {
+                *load = row.load(half);
+            }
+        }
         for (i, slot) in room.slots.iter().enumerate() {
             let body = &mut self.bodies[*slot];
             if !body.is_dynamic() {
@@ -162,7 +167,7 @@ impl World {
     }
 
     /// Makes the contacts ready for a stretch of `span` seconds.
-    fn rows(&self, touches: &[Touch], room: &mut Carry, span: f64) {
+    fn rows(&mut self, touches: &[Touch], room: &mut Carry, span: f64) {
         let mut known: Option<(f64, Friction)> = None;
         for touch in touches {
             let coefficient = self.coefficients(touch.a, touch.b).friction;
@@ -177,7 +182,10 @@ impl World {
                 room.numbers[touch.b] as usize,
             );
             let allowed = self.allowed_approach(touch, span);
-            let row = Row::new(*touch, numbers, &room.movers, allowed, friction);
+            let mut row = Row::new(*touch, numbers, &room.movers, allowed, friction);
+            if let Some(load) = self.pairs.load(touch.key) {
+                row.expect(*load, 0.5 * span);
+            }
             room.rows.push(row);
         }
     }

@@ -5,6 +5,7 @@
 use glam::{DMat2, DMat3, DVec2, DVec3};
 
 use super::grip::{Friction, Hold};
+use super::pairs::Load;
 use super::touch::{Base, Touch};
 use crate::body::Body;
 use crate::response::{compliance, rate_without_pull};
@@ -114,14 +115,37 @@ impl Row {
         row
     }
 
-    /// Starts again for the second half of the stretch.
+    /// Starts again for the second half of the stretch, from what the first half took.
     ///
     /// What closes a gap or opens an overlap on the way must not be left over at the end.
     pub fn renew(&mut self) {
         self.allowed = 0.0;
-        self.pressed = 0.0;
-        self.rubbed = DVec3::ZERO;
         self.given = (DVec3::ZERO, DVec3::ZERO);
+    }
+
+    /// Takes a load for `span` [s] for granted until the passes know better.
+    pub fn expect(&mut self, load: Load, span: f64) {
+        self.pressed = load.pressed * span;
+        self.rubbed = load.rubbed * span;
+    }
+
+    /// What it carries over `span` [s].
+    pub fn load(&self, span: f64) -> Load {
+        Load {
+            pressed: self.pressed / span,
+            rubbed: self.rubbed / span,
+        }
+    }
+
+    /// Gives the bodies what it took for granted, which the passes correct; or takes nothing for granted.
+    pub fn begin(&mut self, all: &mut [Mover], expects: bool) {
+        if !expects {
+            (self.pressed, self.rubbed) = (0.0, DVec3::ZERO);
+            return;
+        }
+        let impulse = self.rubbed - self.touch.normal * self.pressed;
+        all[self.movers.0].push(self.touch.arm_a, impulse);
+        all[self.movers.1].push(self.touch.arm_b, -impulse);
     }
 
     fn prepare(&mut self, all: &[Mover]) {
@@ -153,13 +177,13 @@ impl Row {
         let (arm_a, arm_b) = (self.touch.arm_a, self.touch.arm_b);
         let slip_of =
             |all: &[Mover]| all[self.movers.0].velocity(arm_a) - all[self.movers.1].velocity(arm_b);
-        if n.dot(slip_of(all)) <= self.allowed {
+        if n.dot(slip_of(all)) <= self.allowed && self.pressed == 0.0 {
             return;
         }
         self.twist(all);
         let slip = slip_of(all);
         let approach = n.dot(slip) - self.allowed;
-        if approach <= 0.0 {
+        if approach <= 0.0 && self.pressed == 0.0 {
             return;
         }
         let f00 = n * (-approach / self.stiffness);
@@ -167,10 +191,11 @@ impl Row {
         if let Friction::Rate(rate) = self.friction {
             let f01 = self.k.inverse() * (n * self.allowed - slip);
             // Every blend stops the approach, so the largest rate that does not pull does too.
-            let rate = rate_without_pull(rate, f00.dot(n), f01.dot(n));
+            let (smooth, rough) = (f00.dot(n) - self.pressed, f01.dot(n) - self.pressed);
+            let rate = rate_without_pull(rate, smooth, rough);
             impulse = f00 + (f01 - f00) * rate;
         }
-        self.pressed = (-impulse.dot(n)).max(0.0);
+        self.pressed = (self.pressed - impulse.dot(n)).max(0.0);
         all[self.movers.0].push(arm_a, impulse);
         all[self.movers.1].push(arm_b, -impulse);
     }

@@ -17,6 +17,9 @@ const PARALLEL: f64 = 2e-6;
 /// Tilt of a flat base up to which its edge presses on an arc rather than on a point [rad]: a pin tips at 0.17.
 const ON_EDGE: f64 = 0.2;
 
+/// Overlap in which the way out is looked for again, and not along the face that showed it last [m].
+const DEEP: f64 = 1e-3;
+
 /// A flat round base that lies on a flat face: the contact is the whole patch, not a point.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Base {
@@ -201,6 +204,11 @@ impl World {
 
     /// Exact search between two parts at given poses.
     pub(crate) fn search(&self, a: &Placed, b: &Placed, normal: DVec3) -> Separation {
+        if let Some(answer) = query::on_face(a, b, normal)
+            && answer.gap > -DEEP
+        {
+            return answer;
+        }
         let start = (normal != DVec3::ZERO).then_some(normal);
         query::separation_placed(a, b, start, self.limits())
     }

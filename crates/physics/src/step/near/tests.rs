@@ -170,7 +170,7 @@ fn no_pair_within_reach_is_missed_in_four_million_poses() {
                 world.wait(pair);
             }
             for i in 0..world.awake.len() {
-                world.end_step(world.awake[i] as usize, DT);
+                world.end_tick(world.awake[i] as usize, DT);
             }
             world.dismiss();
         }
