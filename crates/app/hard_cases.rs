@@ -3,14 +3,18 @@
 //! A case compares with analysis or with what its source says, never with an earlier run of this program. One that
 //! fails is listed as failing, with the reason where it is known. docs/hard-cases.md says how to read the table.
 
+mod detection;
 mod determinism;
 mod findings;
 mod free_motion;
+mod friction;
 mod impacts;
+mod oracle;
 mod resting;
 mod rocking;
 mod scene;
 mod shots;
+mod stacks;
 mod tunnelling;
 
 use std::io::{self, IsTerminal, Write};
@@ -53,7 +57,10 @@ fn all() -> Vec<&'static Case> {
         shots::CASES,
         resting::CASES,
         rocking::CASES,
+        friction::CASES,
+        stacks::CASES,
         tunnelling::CASES,
+        detection::CASES,
         determinism::CASES,
     ];
     let mut cases: Vec<&Case> = tables.into_iter().flatten().collect();

@@ -197,6 +197,9 @@ fn nudge_and_watch(setup: &Setup, pin: &Arc<Compound>) -> Watch {
     for _ in 0..20 {
         run(&mut world, 1.0);
         watch.look(&world);
+        if watch.drift > 1e-6 {
+            break;
+        }
     }
     watch
 }

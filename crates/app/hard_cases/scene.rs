@@ -68,6 +68,14 @@ impl Setup {
         }
     }
 
+    /// Gravity as on a plane that falls along +x at this angle [rad].
+    pub fn slope(self, angle: f64) -> Setup {
+        Setup {
+            gravity: DVec3::new(angle.sin(), -angle.cos(), 0.0) * G,
+            ..self
+        }
+    }
+
     /// The coefficients of every pair.
     pub fn contact(self, elasticity: f64, friction: f64) -> Setup {
         Setup {
