@@ -103,6 +103,12 @@ impl<A: Core, B: Core> Pair<A, B> {
         n.dot(self.between(&self.tips(n)))
     }
 
+    /// `s(n)` to half of the digits: good enough to choose where to search.
+    #[inline(always)]
+    pub fn rough_gap(&self, n: DVec3) -> f64 {
+        n.dot(self.offset) - self.a.reach(n) - self.b.reach(n)
+    }
+
     /// Whether there is a circle with this number.
     #[inline(always)]
     pub fn has_circle(index: usize) -> bool {

@@ -283,6 +283,7 @@ fn on_edge(a: &Placed, [p, q]: [DVec3; 2], known: &mut Known, limits: Limits) ->
         cap,
         tolerance: limits.tolerance,
         enough: f64::INFINITY,
+        known: None,
     };
     let n = known.best.n;
     let summit = match half.try_normalize() {

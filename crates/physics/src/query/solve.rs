@@ -114,6 +114,7 @@ impl Task<'_> {
             cap: self.limits.iteration_cap,
             tolerance: self.limits.tolerance.max(1e-13 * pair.size),
             enough: self.limits.enough + radii.0 + radii.1,
+            known: None,
         };
         let found = match self.start {
             Some(start) => starts::from_known(&pair, start, goal),

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::cores::Core;
 use super::pair::{OF_B, Pair};
 use super::path::crossings;
-use super::search::{Goal, Search, State, Summit};
+use super::search::{Goal, SAME, Search, State, Summit};
 
 /// Room for all candidates of two boxes and of two frusta.
 const ROOM: usize = 40;
@@ -13,6 +13,9 @@ const ROOM: usize = 40;
 const POLISHED: usize = 6;
 /// Candidates farther below the best summit than this are not searched from, in units of the pair's size.
 const MARGIN: f64 = 0.15;
+
+/// A candidate farther below the best summit than this is looked at before it is searched from, in the same units.
+const FAR_BELOW: f64 = 0.08;
 
 /// The highest summit found.
 pub(super) struct Found {
@@ -104,6 +107,8 @@ fn thinnest<A: Core, B: Core>(pair: &Pair<A, B>) -> Option<DVec3> {
 struct Candidates {
     list: [(f64, DVec3, State); ROOM],
     count: usize,
+    /// Whether both cores are their own images in their centres.
+    symmetric: bool,
 }
 
 impl Candidates {
@@ -111,18 +116,22 @@ impl Candidates {
         Candidates {
             list: [(f64::NEG_INFINITY, DVec3::Y, State::Free); ROOM],
             count: 0,
+            symmetric: false,
         }
     }
 
     fn put<A: Core, B: Core>(&mut self, pair: &Pair<A, B>, n: DVec3, state: State) {
-        if self.count < ROOM {
-            self.list[self.count] = (pair.gap(n), n, state);
+        // Of opposite normals of symmetric shapes the one along the line of centres is better.
+        let backward = self.symmetric && n.dot(pair.offset) < 0.0;
+        if self.count < ROOM && !backward {
+            self.list[self.count] = (pair.rough_gap(n), n, state);
             self.count += 1;
         }
     }
 
     #[inline(never)]
     fn collect<A: Core, B: Core>(&mut self, pair: &Pair<A, B>) {
+        self.symmetric = pair.a.is_symmetric() && pair.b.is_symmetric();
         let (ends_a, ends_b) = (ends(&pair.a), ends(&pair.b));
         for (ends, of_b) in [(&ends_a, false), (&ends_b, true)] {
             for n in ends.iter().flatten() {
@@ -186,16 +195,17 @@ impl Candidates {
             let Some(next) = next_best(list, best.s - margin) else {
                 break;
             };
-            let (_, n, state) = std::mem::replace(next, (f64::NEG_INFINITY, DVec3::Y, State::Free));
-            if n.dot(best.n) > 1.0 - 1e-9 {
+            let (s, n, state) = std::mem::replace(next, (f64::NEG_INFINITY, DVec3::Y, State::Free));
+            if n.dot(best.n) > SAME || (best.converged && is_below(pair, n, s, &best)) {
                 continue;
             }
             if used >= goal.cap {
                 capped = true;
                 break;
             }
+            let known = best.converged.then_some((best.n, best.s));
             let cap = goal.cap - used;
-            let other = Search::run(pair, n, state, Goal { cap, ..goal });
+            let other = Search::run(pair, n, state, Goal { cap, known, ..goal });
             used += other.iterations;
             capped |= !other.converged;
             if other.s > best.s || (other.s > 0.0 && other.converged) {
@@ -213,6 +223,21 @@ impl Candidates {
             local: false,
         }
     }
+}
+
+/// Whether a candidate lies far below the summit, on a slope that rises all the way to it.
+#[inline(always)]
+fn is_below<A: Core, B: Core>(pair: &Pair<A, B>, n: DVec3, s: f64, summit: &Summit) -> bool {
+    let below = summit.s - s;
+    if below < FAR_BELOW * pair.size {
+        return false;
+    }
+    let at = |x: f64| {
+        let n = n * (1.0 - x) + summit.n * x;
+        pair.rough_gap(n * (1.0 / n.length()))
+    };
+    let (first, half) = (at(0.1), at(0.5));
+    first > s + 0.03 * below && half > first
 }
 
 /// The candidate with the largest s above `floor`.

@@ -43,6 +43,12 @@ impl Core for CuboidCore {
     }
 
     #[inline(always)]
+    fn reach(&self, n: DVec3) -> f64 {
+        let reach = |i: usize| n.dot(self.axes[i]).abs() * self.half[i];
+        reach(0) + reach(1) + reach(2)
+    }
+
+    #[inline(always)]
     fn circle(&self, index: usize) -> Circle {
         Circle {
             axis: self.axes[index],

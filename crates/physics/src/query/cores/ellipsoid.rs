@@ -47,6 +47,11 @@ impl Core for EllipsoidCore {
     }
 
     #[inline(always)]
+    fn reach(&self, n: DVec3) -> f64 {
+        n.dot(self.square.times(n)).sqrt()
+    }
+
+    #[inline(always)]
     fn curvature(&self, _: DVec3, tip: &Tip, u: DVec3, w: DVec3) -> [f64; 3] {
         quadric(&self.square, tip.point, tip.inverse, u, w)
     }

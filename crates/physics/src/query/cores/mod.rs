@@ -163,6 +163,12 @@ pub(super) trait Core {
         self.tip_held(n, 0, 0)
     }
 
+    /// How far the core reaches along the unit normal `n`, to half of the digits: for the choice of normals [m].
+    #[inline(always)]
+    fn reach(&self, n: DVec3) -> f64 {
+        n.dot(self.tip(n).point)
+    }
+
     /// Derivative of the support point `tip` by n within the tangent plane of u and w: uu, uw, ww [m].
     #[inline(always)]
     fn curvature(&self, _n: DVec3, _tip: &Tip, _u: DVec3, _w: DVec3) -> [f64; 3] {
@@ -185,6 +191,11 @@ pub(super) trait Core {
     #[inline(always)]
     fn has_small_circle(&self) -> bool {
         false
+    }
+
+    /// Whether the core is its own image in its centre.
+    fn is_symmetric(&self) -> bool {
+        true
     }
 
     /// The disc at the end that tips on these `sides` belong to.

@@ -54,6 +54,16 @@ impl Core for RevolutionCore<'_> {
         self.disc_tip(across, length, usize::from(side & 1))
     }
 
+    #[inline(always)]
+    fn reach(&self, n: DVec3) -> f64 {
+        let axial = n.dot(self.axis);
+        let across = (1.0 - axial * axial).max(0.0).sqrt();
+        let p = self.profile;
+        let low = p.radius[0] * across + p.height[0] * axial;
+        let high = p.radius[1] * across + p.height[1] * axial;
+        if low > high { low } else { high }
+    }
+
     /// A disc's support point moves around its rim only: `r / |n across| e e^T`, e along the rim.
     #[inline(always)]
     fn curvature(&self, n: DVec3, tip: &Tip, u: DVec3, w: DVec3) -> [f64; 3] {
@@ -83,6 +93,11 @@ impl Core for RevolutionCore<'_> {
     #[inline(always)]
     fn has_small_circle(&self) -> bool {
         self.profile.mantle.1 != 0.0
+    }
+
+    fn is_symmetric(&self) -> bool {
+        let p = self.profile;
+        p.radius[0] == p.radius[1] && p.height[0] == -p.height[1]
     }
 
     #[inline(always)]

@@ -75,6 +75,10 @@ impl Core for TruncatedCore {
         self.curvature(n, tip, e, e)[0]
     }
 
+    fn is_symmetric(&self) -> bool {
+        false
+    }
+
     #[inline(always)]
     fn disc(&self, sides: u8) -> Disc {
         let radius = if sides & 1 == 1 {

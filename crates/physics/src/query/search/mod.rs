@@ -19,6 +19,10 @@ use super::pair::{OF_B, Pair, Tips};
 const NARROW: f64 = 1e-8;
 /// Closest points are lined up when this far apart across n, in units of the pair's size.
 const LINED_UP: f64 = 1e-11;
+/// Cosine of the angle to a known summit within which one look half way decides whether this is its slope: 0.2 rad.
+const CLOSE: f64 = 0.98;
+/// Cosine of the angle within which there is no other summit: 0.045 rad.
+pub(super) const SAME: f64 = 0.999;
 /// Closest points that lie this far apart across n are where they would be, in units of the pair's size.
 const ALIGNED: f64 = 2e-7;
 /// What a last step leaves of the offset across n at most.
@@ -55,6 +59,8 @@ pub(super) struct Goal {
     pub cap: u32,
     pub tolerance: f64,
     pub enough: f64,
+    /// A summit that need not be found again: its normal and s there.
+    pub known: Option<(DVec3, f64)>,
 }
 
 /// Where a search ended.
@@ -156,6 +162,7 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
                 };
             }
             self.iterations += 1;
+            let before = self.n;
             let over = match self.state {
                 State::Free => self.step_free(),
                 State::Disc(of_b) => {
@@ -166,10 +173,25 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
                 State::Circle(index) => self.step_along(index),
                 State::Corner(i, j) => self.step_corner(i, j),
             };
-            if over {
+            if over || (self.n != before && self.is_on_known_slope()) {
                 return Ending::LinedUp;
             }
         }
+    }
+
+    /// Whether the way up from here leads to the summit that is known: it is close, and the way there rises.
+    #[inline(always)]
+    fn is_on_known_slope(&self) -> bool {
+        let Some((n, s)) = self.goal.known else {
+            return false;
+        };
+        let cosine = n.dot(self.n);
+        if self.s > s || cosine < CLOSE {
+            return false;
+        }
+        // The two unit normals' sum is this long.
+        let half_way = (self.n + n) * (1.0 / (2.0 + 2.0 * cosine).sqrt());
+        cosine > SAME || self.pair.rough_gap(half_way) > self.s
     }
 
     /// Whether the search has stopped gaining although its conditions do not hold: rounding has the last word.
