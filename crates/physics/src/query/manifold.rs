@@ -1,8 +1,9 @@
 //! Contact manifolds: the few points that stand for a whole face or line of contact.
 
+use arrayvec::ArrayVec;
 use glam::{DVec2, DVec3};
 
-use super::outline::{Face, face, overlap, plane_axes, reduce};
+use super::outline::{Corners, Face, face, overlap, plane_axes, reduce};
 use super::{Placed, Separation};
 use crate::pose::Pose;
 use crate::shape::{Kind, Shape};
@@ -17,28 +18,17 @@ pub struct ContactPoint {
 }
 
 /// Where two shapes touch, with one to four points.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Manifold {
     /// Unit normal from a to b, Eq. (2).
     pub normal: DVec3,
-    points: [ContactPoint; 4],
-    count: usize,
+    points: ArrayVec<ContactPoint, 4>,
 }
 
 impl Manifold {
     /// The points, around the face or from end to end of the line that they span.
     pub fn points(&self) -> &[ContactPoint] {
-        &self.points[..self.count]
-    }
-
-    fn new(normal: DVec3, points: &[ContactPoint]) -> Manifold {
-        let mut all = [points[0]; 4];
-        all[..points.len()].copy_from_slice(points);
-        Manifold {
-            normal,
-            points: all,
-            count: points.len(),
-        }
+        &self.points
     }
 }
 
@@ -53,14 +43,22 @@ pub fn manifold(
     (shape_b, pose_b): (&Shape, &Pose),
     known: &Separation,
 ) -> Manifold {
-    let a = Placed::new(shape_a, pose_a);
-    let b = Placed::new(shape_b, pose_b);
+    manifold_placed(
+        &Placed::new(shape_a, pose_a),
+        &Placed::new(shape_b, pose_b),
+        known,
+    )
+}
+
+/// The same for placed shapes.
+pub(crate) fn manifold_placed(a: &Placed, b: &Placed, known: &Separation) -> Manifold {
     let contact = known.contact();
     let single = ContactPoint {
         point: contact.point,
         depth: contact.depth,
     };
     let n = known.normal;
+    let of = |points| Manifold { normal: n, points };
     let (u, w) = plane_axes(n, [a.rotation.x_axis, a.rotation.y_axis, a.rotation.z_axis]);
     let frame = Frame {
         origin: contact.point,
@@ -68,8 +66,8 @@ pub fn manifold(
         w,
         n,
     };
-    let (Some(below), Some(above)) = (frame.sheet(&a, n), frame.sheet(&b, -n)) else {
-        return Manifold::new(n, &[single]);
+    let (Some(below), Some(above)) = (frame.sheet(a, n), frame.sheet(b, -n)) else {
+        return of(ArrayVec::from_iter([single]));
     };
     let size = a.shape.size().min(b.shape.size());
     let shared = match (below.outline.is_empty(), above.outline.is_empty()) {
@@ -77,7 +75,7 @@ pub fn manifold(
         (_, true) => below.outline.clone(),
         _ => overlap(&below.outline, &above.outline, size),
     };
-    let points: Vec<ContactPoint> = reduce(&shared, size)
+    let points: ArrayVec<ContactPoint, 4> = reduce(&shared, size)
         .into_iter()
         .map(|at| {
             let (low, high) = (above.height(at), below.height(at));
@@ -88,9 +86,9 @@ pub fn manifold(
         })
         .collect();
     if points.len() < 2 {
-        return Manifold::new(n, &[single]);
+        return of(ArrayVec::from_iter([single]));
     }
-    Manifold::new(n, &points)
+    of(points)
 }
 
 /// Coordinates across and along the normal.
@@ -104,7 +102,7 @@ struct Frame {
 /// A face or edge as seen along the normal, and its height over the plane across it.
 struct Sheet {
     /// Empty for a plane without end.
-    outline: Vec<DVec2>,
+    outline: Corners<DVec2>,
     centre: DVec2,
     rise: f64,
     slope: DVec2,
@@ -129,7 +127,7 @@ impl Frame {
     fn sheet(&self, shape: &Placed, outward: DVec3) -> Option<Sheet> {
         let (points, normal, centre) = match (face(shape, outward), &shape.shape.kind) {
             (Face::Plane, Kind::HalfSpace { normal }) => {
-                (Vec::new(), shape.rotation * *normal, shape.position)
+                (Corners::new(), shape.rotation * *normal, shape.position)
             }
             (Face::Flat(points), _) => {
                 let centre = points.iter().copied().sum::<DVec3>() / points.len() as f64;

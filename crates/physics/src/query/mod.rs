@@ -26,6 +26,7 @@ mod solve;
 mod starts;
 
 pub(crate) use flats::on_face;
+pub(crate) use manifold::manifold_placed;
 pub use manifold::{ContactPoint, Manifold, manifold};
 
 use glam::{DMat3, DVec3};

@@ -3,10 +3,12 @@
 use glam::DVec3;
 
 use super::RELEASE;
+use super::base::Base;
 use super::pairs::Key;
+use super::patch::strike_point;
 use super::scratch::Answer;
 use super::search::Event;
-use super::touch::{Base, Touch};
+use super::touch::Touch;
 use crate::body::Body;
 use crate::response::{Coefficients, Response, impulse};
 use crate::world::{Impact, World};
@@ -187,9 +189,7 @@ impl World {
     fn most_approaching(&self, touches: &mut [Touch], first: bool) -> Option<usize> {
         let mut worst: Option<(usize, f64)> = None;
         for (i, touch) in touches.iter_mut().enumerate() {
-            if let Some(base) = touch.base {
-                touch.set_point(pressure_point(touch, &base, &self.bodies), &self.bodies);
-            }
+            aim(touch, &self.bodies);
             let speed = touch.normal.dot(touch.slip(&self.bodies));
             let movable = [touch.a, touch.b]
                 .iter()
@@ -253,9 +253,7 @@ impl World {
         let leaving = 0.25 * self.resting_speed();
         for touch in touches {
             let mut touch = *touch;
-            if let Some(base) = touch.base {
-                touch.set_point(pressure_point(&touch, &base, &self.bodies), &self.bodies);
-            }
+            aim(&mut touch, &self.bodies);
             let separating = -touch.normal.dot(touch.slip(&self.bodies));
             let lasts = separating < leaving && touch.gap < RELEASE;
             if lasts {
@@ -323,6 +321,15 @@ impl World {
         }
         carried.clear();
         self.scratch.carried = carried;
+    }
+}
+
+/// Puts the point of a contact that is more than a point where the motion of its bodies makes it act.
+fn aim(touch: &mut Touch, bodies: &[Body]) {
+    if let Some(base) = touch.base {
+        touch.set_point(pressure_point(touch, &base, bodies), bodies);
+    } else if let Some(patch) = touch.patch {
+        touch.set_point(strike_point(touch, &patch, bodies), bodies);
     }
 }
 

@@ -5,9 +5,11 @@ pub(crate) mod pairs;
 pub(crate) mod scratch;
 
 mod approach;
+mod base;
 mod events;
 mod grip;
 mod islands;
+mod patch;
 mod queue;
 mod rest;
 mod row;

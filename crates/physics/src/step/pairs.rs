@@ -88,12 +88,14 @@ pub(crate) struct Contact {
 struct Seen {
     ways: (f64, f64),
     touch: Touch,
-    load: Load,
+    loads: [Load; 4],
 }
 
-/// Force that a lasting contact carried last: where the next answer begins.
+/// Force that a point of a lasting contact carried last: where the next answer begins.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Load {
+    /// Where [m], world frame.
+    pub point: DVec3,
     /// Along the normal [N].
     pub pressed: f64,
     /// Across it, on a, within the cone of friction [N].
@@ -276,8 +278,8 @@ impl Pairs {
             return;
         }
         part.touching = on;
-        if let Some(load) = self.load(key) {
-            *load = Load::default();
+        if let Some(loads) = self.loads(key) {
+            *loads = Default::default();
         }
         self.formed += 1;
         for slot in [key.a, key.b] {
@@ -291,11 +293,11 @@ impl Pairs {
         }
     }
 
-    /// What a contact that was seen carries.
-    pub fn load(&mut self, key: Key) -> Option<&mut Load> {
+    /// What the points of a contact that was seen carry.
+    pub fn loads(&mut self, key: Key) -> Option<&mut [Load; 4]> {
         let place = self.part(key).seen;
         let seen = self.seen.get_mut(place as usize)?;
-        Some(&mut seen.load)
+        Some(&mut seen.loads)
     }
 
     /// The contact as it was seen last.
@@ -318,8 +320,8 @@ impl Pairs {
             (seen.ways, seen.touch) = (ways, touch);
             return;
         }
-        let load = Load::default();
-        let now = Seen { ways, touch, load };
+        let loads = Default::default();
+        let now = Seen { ways, touch, loads };
         let place = match self.free_seen.pop() {
             Some(place) => {
                 self.seen[place as usize] = now;

@@ -13,7 +13,7 @@ use glam::DVec3;
 
 use super::RELEASE;
 use super::grip::Friction;
-use super::pairs::{Contact, Key};
+use super::pairs::{Contact, Key, Load};
 use super::row::{Mover, Row};
 use super::scratch::Carry;
 use super::solve::group;
@@ -24,6 +24,8 @@ use crate::world::World;
 
 /// Depth that a lasting contact keeps [m]; deeper ones are pushed out slowly.
 const SLOP: f64 = 5e-6;
+/// Points of a contact nearer to each other than this from one step to the next are the same [m].
+const SAME: f64 = 0.01;
 /// Gap that is not worth closing [m]; a standing pin then has no velocity at all.
 const EXACT: f64 = 1e-9;
 
@@ -70,11 +72,7 @@ impl World {
         room.rows.iter_mut().for_each(Row::renew);
         let passes = passes + room.answer(&self.bodies, carried.len(), kick, enough);
         self.effort.passes += u64::from(passes);
-        for row in &room.rows {
-            if let Some(load) = self.pairs.load(row.touch.key) {
-                *load = row.load(half);
-            }
-        }
+        self.keep_loads(&room.rows, half);
         for (i, slot) in room.slots.iter().enumerate() {
             let body = &mut self.bodies[*slot];
             if !body.is_dynamic() {
@@ -166,27 +164,51 @@ impl World {
         true
     }
 
-    /// Makes the contacts ready for a stretch of `span` seconds.
+    /// Makes the contacts ready for a stretch of `span` seconds: a row for each of their points.
     fn rows(&mut self, touches: &[Touch], room: &mut Carry, span: f64) {
         let mut known: Option<(f64, Friction)> = None;
         for touch in touches {
             let coefficient = self.coefficients(touch.a, touch.b).friction;
+            let points = touch.patch.map_or(1, |patch| patch.spots().len());
             // Most contacts of a scene share their friction rate: the power is taken once for all in a row.
             let friction = match known {
-                Some((same, friction)) if same == coefficient => friction,
-                _ => self.friction(coefficient, 0.5 * span),
+                Some((same, friction)) if same == coefficient && points == 1 => friction,
+                // Every point takes its share of the slip.
+                _ => self.friction(coefficient, 0.5 * span / points as f64),
             };
-            known = Some((coefficient, friction));
+            known = (points == 1).then_some((coefficient, friction));
             let numbers = (
                 room.numbers[touch.a] as usize,
                 room.numbers[touch.b] as usize,
             );
-            let allowed = self.allowed_approach(touch, span);
-            let mut row = Row::new(*touch, numbers, &room.movers, allowed, friction);
-            if let Some(load) = self.pairs.load(touch.key) {
-                row.expect(*load, 0.5 * span);
+            let loads = self.pairs.loads(touch.key).map(|loads| *loads);
+            for i in 0..points {
+                let mut touch = *touch;
+                if let Some(patch) = touch.patch {
+                    touch.gap = patch.spots()[i].gap;
+                    touch.set_point(patch.spots()[i].point, &self.bodies);
+                }
+                let allowed = self.allowed_approach(&touch, span);
+                let mut row = Row::new(touch, numbers, &room.movers, allowed, friction);
+                let near = |load: &&Load| load.point.distance_squared(touch.point) < SAME * SAME;
+                if let Some(load) = loads.iter().flatten().find(near) {
+                    row.expect(*load, 0.5 * span);
+                }
+                room.rows.push(row);
             }
-            room.rows.push(row);
+        }
+    }
+
+    /// Remembers what the points of all contacts carried over `span` [s].
+    fn keep_loads(&mut self, rows: &[Row], span: f64) {
+        for group in rows.chunk_by(|x, y| x.touch.key == y.touch.key) {
+            let Some(loads) = self.pairs.loads(group[0].touch.key) else {
+                continue;
+            };
+            *loads = Default::default();
+            for (load, row) in loads.iter_mut().zip(group) {
+                *load = row.load(span);
+            }
         }
     }
 

@@ -4,9 +4,10 @@
 
 use glam::{DMat2, DMat3, DVec2, DVec3};
 
+use super::base::Base;
 use super::grip::{Friction, Hold};
 use super::pairs::Load;
-use super::touch::{Base, Touch};
+use super::touch::Touch;
 use crate::body::Body;
 use crate::response::{compliance, rate_without_pull};
 
@@ -54,6 +55,8 @@ struct Plane {
     u: DVec3,
     w: DVec3,
     inverse: DMat2,
+    /// Largest change of the slip per impulse [1/kg].
+    stiffest: f64,
 }
 
 /// A lasting contact while it is being answered.
@@ -132,6 +135,7 @@ impl Row {
     /// What it carries over `span` [s].
     pub fn load(&self, span: f64) -> Load {
         Load {
+            point: self.touch.point,
             pressed: self.pressed / span,
             rubbed: self.rubbed / span,
         }
@@ -166,8 +170,16 @@ impl Row {
             let (ku, kw) = (self.k * u, self.k * w);
             let mixed = u.dot(kw);
             let k = DMat2::from_cols_array(&[u.dot(ku), mixed, mixed, w.dot(kw)]);
-            let inverse = k.inverse();
-            self.plane = Plane { u, w, inverse };
+            let (half, bias) = (
+                0.5 * (k.x_axis.x + k.y_axis.y),
+                0.5 * (k.x_axis.x - k.y_axis.y),
+            );
+            self.plane = Plane {
+                u,
+                w,
+                inverse: k.inverse(),
+                stiffest: half + (bias * bias + mixed * mixed).sqrt(),
+            };
         }
     }
 
@@ -250,10 +262,21 @@ impl Row {
         };
         let (arm_a, arm_b) = (self.touch.arm_a, self.touch.arm_b);
         let slip = all[self.movers.0].velocity(arm_a) - all[self.movers.1].velocity(arm_b);
-        let Plane { u, w, inverse } = self.plane;
-        let change = inverse * DVec2::new(u.dot(slip), w.dot(slip));
-        let rubbed = self.rubbed - u * change.x - w * change.y;
-        let rubbed = rubbed.clamp_length_max(mu * self.pressed);
+        let Plane {
+            u,
+            w,
+            inverse,
+            stiffest,
+        } = self.plane;
+        let most = mu * self.pressed;
+        let slip = DVec2::new(u.dot(slip), w.dot(slip));
+        let stop = inverse * slip;
+        let mut rubbed = self.rubbed - u * stop.x - w * stop.y;
+        if rubbed.length_squared() > most * most {
+            // A step that is the same in all directions: what is cut off then points against the slip that is left.
+            let step = slip / stiffest;
+            rubbed = (self.rubbed - u * step.x - w * step.y).clamp_length_max(most);
+        }
         let change = rubbed - self.rubbed;
         self.rubbed = rubbed;
         if change == DVec3::ZERO {
