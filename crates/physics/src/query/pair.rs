@@ -10,6 +10,9 @@ pub(super) const OF_B: usize = 3;
 /// Axes that differ by less than this [rad] are parallel.
 const PARALLEL: f64 = 1e-10;
 
+/// Most projections of faces on each other in turn; one or two do unless the faces barely meet.
+const PROJECTIONS: u32 = 100;
+
 /// Core a, and core b mirrored at its centre, whose centre lies at `offset` from a's.
 pub(super) struct Pair<A, B> {
     pub a: A,
@@ -129,12 +132,12 @@ impl<A: Core, B: Core> Pair<A, B> {
         let mut point_a = self.a.face_point(n, self.offset);
         let mut point_b = self.b.face_point(n, self.offset - point_a);
         let mut last = f64::INFINITY;
-        for _ in 0..12 {
+        for _ in 0..PROJECTIONS {
             point_a = self.a.face_point(n, self.offset - point_b);
             point_b = self.b.face_point(n, self.offset - point_a);
             let d = self.offset - point_a - point_b;
             let aside = (d - n * n.dot(d)).length();
-            if aside > 0.999 * last || aside < 1e-15 * self.size {
+            if aside > 0.9999 * last || aside < 1e-15 * self.size {
                 break;
             }
             last = aside;

@@ -11,7 +11,7 @@ use super::cores::{Core, EllipsoidCore, PointCore, RevolutionCore, TruncatedCore
 use super::pair::Pair;
 use super::search::{Goal, Search, State, Summit};
 use super::simplex::{Best, corner, middle};
-use super::{Limits, Placed, Separation, bounds, bundle, expand, flats};
+use super::{Limits, Placed, Separation, bounds, bundle, expand, flats, gap_along};
 use crate::shape::{Kind, Profile};
 
 /// What an overlap can still be shallower by when the search for other ways out ends, in units of the pair's size.
@@ -24,6 +24,8 @@ const CLIMB: u32 = 9;
 const CLIMB_OVER_SEAM: u32 = 6;
 /// Steps of a search before it is asked whether a corner is missing.
 const IMPATIENT: u32 = 3;
+/// Width of the interval of a gap that counts as found, in units of the pair's size.
+const NARROW: f64 = 1e-8;
 /// A corner that is farther by less than this is rounding, in units of the pair's size.
 const ROUNDING: f64 = 1e-13;
 
@@ -65,7 +67,14 @@ pub(super) fn separation(
         iterations: first.iterations,
         converged: !first.capped,
     };
+    if known.best.s > 0.0 && known.best.s <= limits.enough {
+        // Beside a flat end's axis s rises steeply on all sides, and a model of it may see its top where none is.
+        known.converged &= first.point_a.distance(first.point_b) - known.best.s <= NARROW * size;
+    }
     let shallow = CERTAIN * size;
+    if !known.converged {
+        visit_poles(a, b, &mut known, limits.iteration_cap);
+    }
     if !known.converged && -known.best.s <= shallow {
         polish(a, b, &different(carrying), &mut known, limits);
     }
@@ -98,10 +107,30 @@ pub(super) fn separation(
     known.answer(upper.map(|up| up.max(known.best.s)))
 }
 
+/// Looks at the axes of the flat ends close by, towards which the climb crawls.
+fn visit_poles(a: &Placed, b: &Placed, known: &mut Known, cap: u32) {
+    for pole in [a.shape.pole(0), a.shape.pole(1)].into_iter().flatten() {
+        let n = a.rotation.y_axis * pole;
+        if n.dot(known.best.n) < 0.9 || known.iterations >= cap {
+            continue;
+        }
+        known.iterations += 1;
+        let s = gap_along(a, b, n);
+        if s <= known.best.s {
+            continue;
+        }
+        known.best = Best { s, n };
+        if let Ok(lined_up) = flats::line_up(a, b, n, s) {
+            known.points = (lined_up.point_a, lined_up.point_b);
+            known.converged = true;
+        }
+    }
+}
+
 /// The answer for shapes that are apart.
 fn apart(a: &Placed, b: &Placed, mut known: Known, enough: f64) -> Separation {
     let Best { s, n } = known.best;
-    let narrow = 1e-8 * (a.shape.size() + b.shape.size());
+    let narrow = NARROW * (a.shape.size() + b.shape.size());
     let mut upper = (known.points.1 - known.points.0).length().max(s);
     if upper - s > narrow
         && let Ok(lined_up) = flats::line_up(a, b, n, s)

@@ -5,20 +5,22 @@ use glam::DVec3;
 use super::super::cores::{Core, Disc};
 use super::super::path::Arc;
 use super::walk::End;
-use super::{LINED_UP, ROUNDING, Search, State};
+use super::{LINED_UP, ROUNDING, SURE, Search, State};
 
 /// Longest step on the tangent plane; on the sphere the way to its end is an arc of 63 degrees.
 const LONGEST: f64 = 2.0;
 /// A step as short as this may be the last [rad].
 pub(super) const SMALL: f64 = 2e-3;
+/// Overlap that counts as touching, in units of the pair's size.
+const TOUCHING: f64 = 1e-2;
 /// Step along directions in which s is not concave [rad].
 pub(super) const STRIDE: f64 = 0.7;
 
 /// What became of a free step.
 enum Step {
     Done,
-    /// Go along this vector; the second: whether it is a full Newton step.
-    Go(DVec3, bool),
+    /// Go along this vector; the second: how much s bends at least, if it is a full Newton step [m].
+    Go(DVec3, Option<f64>),
 }
 
 impl<A: Core, B: Core> Search<'_, A, B> {
@@ -33,7 +35,7 @@ impl<A: Core, B: Core> Search<'_, A, B> {
                 match self.visit_disc(of_b, false) {
                     Ok(true) => return true,
                     Ok(false) => {}
-                    Err((step, rise)) => return self.travel(step, rise, false),
+                    Err((step, rise)) => return self.travel(step, rise, None),
                 }
             }
         }
@@ -69,9 +71,12 @@ impl<A: Core, B: Core> Search<'_, A, B> {
                 (k[0] * g.1 - k[1] * g.0) * inverse,
             );
             let gain = 0.5 * (t.0 * g.0 + t.1 * g.1);
-            if gain <= self.goal.tolerance && self.is_narrow(across) {
+            let sure = t.0 * t.0 + t.1 * t.1 <= SURE * SURE;
+            if gain <= self.goal.tolerance && sure && self.is_narrow(across) {
                 return Step::Done;
             }
+            t
+        } else if let Some(t) = self.saddle_step(k, det, g, u, w) {
             t
         } else {
             uphill(k, g, pair.size)
@@ -86,7 +91,33 @@ impl<A: Core, B: Core> Search<'_, A, B> {
         if length > LONGEST * LONGEST {
             step *= LONGEST / length.sqrt();
         }
-        Step::Go(step, newton)
+        Step::Go(step, newton.then(|| det / (k[0] + k[2])))
+    }
+
+    /// Newton's step where s is not concave, if it gains: of edges and corners that all but touch s is a ridge, which is
+    /// concave only where they are apart.
+    #[inline(never)]
+    fn saddle_step(
+        &self,
+        k: [f64; 3],
+        det: f64,
+        g: (f64, f64),
+        u: DVec3,
+        w: DVec3,
+    ) -> Option<(f64, f64)> {
+        if self.s < -TOUCHING * self.pair.size || det == 0.0 {
+            return None;
+        }
+        let t = (
+            (k[2] * g.0 - k[1] * g.1) / det,
+            (k[0] * g.1 - k[1] * g.0) / det,
+        );
+        if t.0 * t.0 + t.1 * t.1 > 1.0 {
+            return None;
+        }
+        let n = self.n + u * t.0 + w * t.1;
+        let gained = self.pair.gap(n * (1.0 / n.length())) - self.s;
+        (gained > 0.5 * self.s.abs()).then_some(t)
     }
 
     /// Whether the step passes the axis of the disc that the support point lies on, where s has no derivative.
@@ -102,7 +133,7 @@ impl<A: Core, B: Core> Search<'_, A, B> {
 
     /// The disc that the support point of a (or b) lies on.
     #[inline(always)]
-    fn disc(&self, of_b: bool) -> Disc {
+    pub(super) fn disc(&self, of_b: bool) -> Disc {
         if of_b {
             self.pair.b.disc(self.tips.b.sides)
         } else {
@@ -171,7 +202,7 @@ impl<A: Core, B: Core> Search<'_, A, B> {
 
     /// Goes along `step` as far as s rises; `rise` is the slope of s at its start. True if that was the last step.
     #[inline(always)]
-    pub(super) fn travel(&mut self, step: DVec3, rise: f64, newton: bool) -> bool {
+    pub(super) fn travel(&mut self, step: DVec3, rise: f64, newton: Option<f64>) -> bool {
         let left = self.left.take().map(|(index, _)| index);
         let path = Arc {
             from: self.n,
@@ -185,11 +216,14 @@ impl<A: Core, B: Core> Search<'_, A, B> {
             }
             End::Open { x, n, tips, whole } => {
                 let step_squared = step.length_squared() * x * x;
-                let small = newton && whole && step_squared < SMALL * SMALL;
+                let small = whole && step_squared < SMALL * SMALL;
                 let same = small && tips.sides() == self.tips.sides();
                 let before = self.across_squared();
                 self.accept(n, tips);
-                same && self.was_last(step_squared, before, self.across_squared())
+                let bend = newton.filter(|_| same);
+                bend.is_some_and(|bend| {
+                    self.was_last(step_squared, before, self.across_squared(), bend)
+                })
             }
         }
     }

@@ -6,7 +6,7 @@ use super::super::cores::Core;
 use super::super::path::Along;
 use super::free::{SMALL, STRIDE};
 use super::walk::End;
-use super::{LINED_UP, Search, State, held};
+use super::{LINED_UP, SURE, Search, State, held};
 
 impl<A: Core, B: Core> Search<'_, A, B> {
     /// One step along the circle `index`, or off it.
@@ -33,7 +33,9 @@ impl<A: Core, B: Core> Search<'_, A, B> {
             f64::INFINITY
         };
         let level = along.abs() <= tolerance && (self.s > 0.0 || bend > -1e-9 * pair.size);
-        let settled = level || (gain <= self.goal.tolerance && self.is_narrow(along * along));
+        let sure = along.abs() <= SURE * bend * radius;
+        let settled =
+            level || (gain <= self.goal.tolerance && sure && self.is_narrow(along * along));
         if excess == 0.0 && settled {
             return true;
         }
@@ -67,7 +69,7 @@ impl<A: Core, B: Core> Search<'_, A, B> {
                 let small = bend > 0.0 && whole && excess == 0.0 && x * x < SMALL * SMALL;
                 let same = small && tips.sides() == self.tips.sides();
                 self.accept(n, tips);
-                same && self.was_last(x * x, along * along, self.across_on(index))
+                same && self.was_last(x * x, along * along, self.across_on(index), bend)
             }
         }
     }

@@ -27,6 +27,10 @@ pub(super) const SAME: f64 = 0.999;
 const ALIGNED: f64 = 2e-7;
 /// What a last step leaves of the offset across n at most.
 const FELL: f64 = 1e-2;
+/// A search looks at the discs' axes again after this many normals: most end before.
+const SLOW: u32 = 6;
+/// Angle by which the normal of an answer may be off [rad].
+const SURE: f64 = 3e-5;
 /// A gain below this is rounding, in units of the pair's size.
 const ROUNDING: f64 = 1e-14;
 
@@ -162,13 +166,16 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
                 };
             }
             self.iterations += 1;
+            if self.iterations.is_multiple_of(SLOW) && self.visit_discs() {
+                return Ending::LinedUp;
+            }
             let before = self.n;
             let over = match self.state {
                 State::Free => self.step_free(),
                 State::Disc(of_b) => {
                     self.state = State::Free;
                     self.visit_disc(of_b, true)
-                        .unwrap_or_else(|(step, rise)| self.travel(step, rise, false))
+                        .unwrap_or_else(|(step, rise)| self.travel(step, rise, None))
                 }
                 State::Circle(index) => self.step_along(index),
                 State::Corner(i, j) => self.step_corner(i, j),
@@ -177,6 +184,28 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
                 return Ending::LinedUp;
             }
         }
+    }
+
+    /// Looks at the axes of the discs that the support points lie on, towards which steps along a kink crawl.
+    #[cold]
+    #[inline(never)]
+    fn visit_discs(&mut self) -> bool {
+        for (of_b, has) in [(false, A::DISCS), (true, B::DISCS)] {
+            let disc = self.disc(of_b);
+            if !has || disc.radius == 0.0 || disc.axis.dot(self.n) < 0.9 {
+                continue;
+            }
+            match self.visit_disc(of_b, false) {
+                Ok(true) => return true,
+                Ok(false) => {}
+                Err((step, rise)) => {
+                    (self.state, self.held) = (State::Free, 0);
+                    self.travel(step, rise, None);
+                    return false;
+                }
+            }
+        }
+        false
     }
 
     /// Whether the way up from here leads to the summit that is known: it is close, and the way there rises.
@@ -224,11 +253,15 @@ impl<'p, A: Core, B: Core> Search<'p, A, B> {
 
     /// Whether a full Newton step that brought the squared offset across n from `before` to `after` was the last.
     ///
-    /// What is left is the square of the step, if the offset fell as it does where that holds.
+    /// What is left is the square of the step, if the offset fell as it does where that holds; where s hardly bends
+    /// (by `bend` at least [m]) a small offset may still be a large angle.
     #[inline(always)]
-    fn was_last(&self, step_squared: f64, before: f64, after: f64) -> bool {
+    fn was_last(&self, step_squared: f64, before: f64, after: f64, bend: f64) -> bool {
         let left = step_squared * step_squared * self.pair.size;
-        left <= 4.0 * self.goal.tolerance && after <= FELL * FELL * before && self.is_narrow(after)
+        left <= 4.0 * self.goal.tolerance
+            && after <= FELL * FELL * before
+            && after <= SURE * SURE * bend * bend
+            && self.is_narrow(after)
     }
 
     /// Puts the search on a kink, where these are the support points below it.
