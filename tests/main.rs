@@ -14,6 +14,8 @@ mod query;
 mod recording;
 /// The release velocity comes out of the poses as it does out of measured velocities.
 mod release;
+/// Throws without hands, one and many.
+mod shot;
 /// Folders, and the real program.
 mod support;
 /// A person bowls in a real window.

@@ -1,9 +1,13 @@
 //! The command line: what a person may ask for, and what is refused before anything starts.
 
+mod throw;
+
 use std::path::PathBuf;
 
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+
+pub use throw::{ModelChoice, PinNumbers, ShapeChoice, ShotArguments, ThrowArguments};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -12,7 +16,8 @@ Examples:
   bowling play --offscreen --frames 3     a short scripted recording, no screen needed
   bowling play --set objects.elasticity=0.9   change one setting for this run
   bowling replay out/2026-01-31T10-15-00Z-seed1   check a recording to the last bit
-  bowling query pairs.jsonl --time        how far apart are two shapes, and how long does it take to tell";
+  bowling query pairs.jsonl --time        how far apart are two shapes, and how long does it take to tell
+  bowling shot --offset 0.07 --repeat 1000 --jitter-offset 0.01   how many pins fall, and how often all";
 
 /// Immersive pin bowling for presence experiments.
 ///
@@ -54,10 +59,20 @@ impl Arguments {
             let problem = format!(
                 "--offscreen opens no display, but --device {name} needs one: leave one of the two out"
             );
-            return Err(Self::command().error(ErrorKind::ArgumentConflict, problem));
+            return Err(unusable(problem));
+        }
+        if let Some(Command::Shot(shot)) = &self.command
+            && let Some(problem) = shot.contradiction()
+        {
+            return Err(unusable(problem));
         }
         Ok(self)
     }
+}
+
+/// The refusal of arguments that cannot be used: a sentence for the error stream, and exit code 2.
+pub fn unusable(problem: impl std::fmt::Display) -> clap::Error {
+    Arguments::command().error(ErrorKind::ArgumentConflict, problem)
 }
 
 /// What the program does.
@@ -86,6 +101,12 @@ pub enum Command {
     /// One line a case: verdict, time, section, name, what is right and from where, when it passes, and
     /// what was measured; docs/hard-cases.md says more. The exit code is 1 if any fails.
     HardCases(HardCasesArguments),
+    /// Throw a ball at the pins without hands or pictures.
+    ///
+    /// Says which pins fell, what ball and first pin did just after the first hit, energy and momentum
+    /// before and after, and what it cost; with --repeat how that is distributed. docs/shot.md
+    /// explains every number.
+    Shot(ShotArguments),
 }
 
 /// Who or what bowls.

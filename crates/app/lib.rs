@@ -1,7 +1,7 @@
 //! The `bowling` program: who bowls, what is recorded, what is drawn.
 //!
-//! Entry points: [`run`] reads the command line; [`play`], [`replay`], [`query`] and [`hard_cases`] are the
-//! commands; a [`session::Session`] takes one input per displayed frame from any device.
+//! Entry points: [`run`] reads the command line; [`play`], [`replay`], [`query`], [`hard_cases`] and
+//! [`shot`] are the commands; a [`session::Session`] takes one input per displayed frame from any device.
 
 pub mod args;
 pub mod boundary;
@@ -21,6 +21,7 @@ pub mod replay;
 pub mod root;
 pub mod scenery;
 pub mod session;
+pub mod shot;
 pub mod window;
 
 use std::ffi::OsString;
@@ -49,6 +50,11 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
     };
     match obey(&arguments) {
         Ok(()) => ExitCode::SUCCESS,
+        // Arguments that only turned out to be unusable when they were put to use.
+        Err(error) if error.is::<clap::Error>() => {
+            eprint!("{error}");
+            ExitCode::from(BAD_ARGUMENTS)
+        }
         Err(error) => {
             // The whole chain in one line: what was tried, then why it failed.
             eprintln!("error: {error:#}");
@@ -67,5 +73,6 @@ fn obey(arguments: &Arguments) -> Result<()> {
         Some(Command::Replay(arguments)) => replay::replay(&arguments.folder),
         Some(Command::Query(arguments)) => query::query(arguments),
         Some(Command::HardCases(arguments)) => hard_cases::hard_cases(arguments),
+        Some(Command::Shot(shot)) => shot::shot(shot, &root::find(arguments.root.as_deref())?),
     }
 }

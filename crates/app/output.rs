@@ -105,6 +105,17 @@ pub struct Draft {
 }
 
 impl Draft {
+    /// Starts a file at `path`, which appears only once it is finished.
+    ///
+    /// # Errors
+    /// When the path names no file, or its folder cannot be written.
+    pub fn at(path: &Path) -> Result<Self> {
+        let name = path.file_name().and_then(|name| name.to_str());
+        let name = name.with_context(|| format!("{} is no name of a file", path.display()))?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::create(folder, name)
+    }
+
     fn create(folder: &Path, name: &str) -> Result<Self> {
         let target = folder.join(name);
         let temporary = folder.join(format!(".{name}.part"));

@@ -15,6 +15,13 @@ impl SplitMix64 {
         SplitMix64 { state: seed }
     }
 
+    /// The stream of piece `index` of something that `seed` fixes: pieces may be drawn in any order.
+    pub fn for_index(seed: u64, index: u64) -> Self {
+        let start = SplitMix64::new(seed).next_u64();
+        // Streams of neighbours would overlap if only their states were a step apart.
+        SplitMix64::new(SplitMix64::new(start ^ index).next_u64())
+    }
+
     /// The next 64 random bits.
     pub fn next_u64(&mut self) -> u64 {
         self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);

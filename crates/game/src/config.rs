@@ -5,6 +5,7 @@
 //! range ends the program with one sentence that names the file, the line and the key.
 
 mod alley;
+pub(crate) mod coulomb;
 mod layers;
 mod origins;
 mod session;
@@ -18,6 +19,7 @@ pub use alley::{
     DeskConfig, GutterConfig, KickbackConfig, LaneConfig, PitConfig, RackConfig, RoomConfig,
     StartConfig,
 };
+pub use coulomb::{CoulombConfig, PairConfig};
 pub use layers::{ConfigError, Layer};
 pub use session::{
     DisplayConfig, DisplayProfile, DisplayProfileName, ParticipantConfig, PinsetterConfig,
@@ -36,6 +38,8 @@ pub struct Config {
     pub physics: PhysicsConfig,
     /// What every object is made of, and which shape it has: Table 1 of the paper.
     pub objects: ObjectsConfig,
+    /// How pairs of surfaces meet under Coulomb's law.
+    pub coulomb: CoulombConfig,
     /// The lane and the pin deck.
     pub lane: LaneConfig,
     /// The gutters on both sides.
@@ -100,6 +104,8 @@ pub enum ResponseModel {
     UnoSlater,
     /// The same without pull and without hop.
     Guarded,
+    /// Restitution with a cone of friction, pair by pair from its own table: the physical reference.
+    Coulomb,
 }
 
 /// What every object is made of: Table 1 of the paper.

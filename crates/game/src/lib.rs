@@ -7,6 +7,8 @@
 
 mod alley;
 mod ball_return;
+mod bare_alley;
+mod bodies;
 mod buttons;
 mod components;
 mod condition;
@@ -29,13 +31,14 @@ mod walk;
 use glam::DVec3;
 use physics::Pose;
 
+pub use bare_alley::{BareAlley, BareAlleyError};
 pub use condition::{Button, Conditions};
 pub use config::{
-    BallConfig, Config, ConfigError, DeskConfig, DisplayConfig, DisplayProfile, DisplayProfileName,
-    GutterConfig, HandConfig, KickbackConfig, LaneConfig, Layer, ObjectShape, ObjectsConfig,
-    ParticipantConfig, PhysicsConfig, PinConfig, PinEllipsoidConfig, PinPartsConfig,
-    PinsetterConfig, PitConfig, RackConfig, ReleaseConfig, ReleaseFit, ResponseModel, RoomConfig,
-    RulesConfig, StartConfig, TrackingConfig, WalkingConfig,
+    BallConfig, Config, ConfigError, CoulombConfig, DeskConfig, DisplayConfig, DisplayProfile,
+    DisplayProfileName, GutterConfig, HandConfig, KickbackConfig, LaneConfig, Layer, ObjectShape,
+    ObjectsConfig, PairConfig, ParticipantConfig, PhysicsConfig, PinConfig, PinEllipsoidConfig,
+    PinPartsConfig, PinsetterConfig, PitConfig, RackConfig, ReleaseConfig, ReleaseFit,
+    ResponseModel, RoomConfig, RulesConfig, StartConfig, TrackingConfig, WalkingConfig,
 };
 pub use event::{
     EndReason, Event, EventKind, Release, ReleaseSource, ReleaseVelocity, TrackedPart,

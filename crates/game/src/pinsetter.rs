@@ -140,7 +140,7 @@ fn on_spot(room: &Room, pin: Entity) -> Pose {
 
 /// A standing pin upright where its base is, turned as it is turned.
 fn where_it_stands(room: &Room, pin: Entity) -> Pose {
-    let (base, axis) = base_and_axis(room, pin);
+    let (base, axis) = base_and_axis(&room.config, room.body(pin).pose());
     let rotation = DQuat::from_rotation_arc(axis, DVec3::Y) * room.body(pin).pose().rotation;
     Pose::new(room.upright(base.x, base.z).position, rotation)
 }

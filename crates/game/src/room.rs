@@ -5,18 +5,16 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use hecs::Entity;
-use physics::{
-    Body, BodyDef, BodyId, Compound, MassProperties, Material, Motion, Pose, Response, Settings,
-    Shape, ShapeError, Surface, World,
-};
+use physics::{Body, BodyDef, BodyId, Compound, Motion, Pose, Shape, ShapeError, World};
 
 use crate::GameError;
 use crate::alley;
+use crate::bodies;
 use crate::components::{
     Ball, Grabbable, Journey, Painted, Physical, Pin, PinKeeper, PushButton, Shown,
 };
-use crate::config::{Config, ResponseModel};
-use crate::pin_shape::{pin_compound, pin_mass};
+use crate::config::{Config, coulomb};
+use crate::pin_shape::pin_compound;
 use crate::visible::Model;
 
 /// Thickness of the sweep bar along the lane [m].
@@ -156,54 +154,28 @@ struct Builder<'a> {
 
 impl<'a> Builder<'a> {
     fn new(config: &'a Config) -> Result<Self, GameError> {
-        let physics = &config.physics;
-        let settings = Settings {
-            step_hz: physics.step_hz,
-            gravity: DVec3::NEG_Y * physics.gravity_mps2,
-            response: match physics.response {
-                ResponseModel::UnoSlater => Response::UnoSlater,
-                ResponseModel::Guarded => Response::Guarded,
-            },
-            iteration_cap: physics.iteration_cap,
-            friction_reference_s: physics.friction_reference_s,
-            sleeping: physics.sleeping,
-            ..Settings::default()
-        };
         Ok(Self {
             config,
-            world: World::new(settings)?,
+            world: bodies::world(config)?,
             ecs: hecs::World::new(),
             owners: BTreeMap::new(),
         })
     }
 
-    /// Adds a body of the condition's one material, and the entity it belongs to.
-    fn body(
-        &mut self,
-        compound: Arc<Compound>,
-        motion: Motion,
-        mass: MassProperties,
-        pose: Pose,
-        shown: Shown,
-    ) -> Entity {
-        let objects = &self.config.objects;
-        let material = Material {
-            elasticity: objects.elasticity,
-            friction_rate: objects.friction_rate,
-            surface: Surface::default(),
-        };
-        let id = self.world.add(BodyDef {
-            compound,
-            motion,
-            mass,
-            material,
-            pose,
-            linear_velocity: DVec3::ZERO,
-            angular_velocity: DVec3::ZERO,
-        });
+    /// Adds a body, and the entity it belongs to.
+    fn body(&mut self, def: BodyDef, shown: Shown) -> Entity {
+        let id = self.world.add(def);
         let entity = self.ecs.spawn((Physical(id), shown));
         self.owners.insert(id, entity);
         entity
+    }
+
+    /// Adds a body that goes where it is driven.
+    fn driven(&mut self, shape: Shape, pose: Pose, shown: Shown) -> Entity {
+        let compound = Arc::new(Compound::single(shape));
+        let (motion, mass) = (Motion::Driven, bodies::immovable());
+        let def = bodies::body(self.config, coulomb::REST, compound, motion, mass, pose);
+        self.body(def, shown)
     }
 
     fn building(&mut self) -> Result<Vec<(Pose, DVec3, Shape)>, ShapeError> {
@@ -216,10 +188,9 @@ impl<'a> Builder<'a> {
                 is_hidden: false,
             };
             if part.is_solid {
-                let shape = Shape::cuboid(part.size / 2.0)?;
-                let compound = Arc::new(Compound::single(shape.clone()));
-                self.body(compound, Motion::Fixed, immovable(), part.pose, shown);
-                obstacles.push((part.pose, part.size / 2.0, shape));
+                let half = part.size / 2.0;
+                self.body(bodies::part(self.config, &part)?, shown);
+                obstacles.push((part.pose, half, Shape::cuboid(half)?));
             } else {
                 self.ecs.spawn((Painted(part.pose), shown));
             }
@@ -233,7 +204,8 @@ impl<'a> Builder<'a> {
         let spots = alley::pin_spots(&self.config.lane);
         let mut pins = Vec::new();
         for (number, spot) in (1..).zip(spots) {
-            let pose = Pose::from_position(spot + DVec3::Y * pin.cg_height_m);
+            let def = bodies::pin(self.config, compound.clone(), spot);
+            let pose = def.pose;
             let width = 2.0 * pin.parts.belly_radius_m;
             let shown = Shown {
                 model: Model::Pin(number),
@@ -241,13 +213,7 @@ impl<'a> Builder<'a> {
                 body_from_model: Pose::from_position(DVec3::NEG_Y * pin.cg_height_m),
                 is_hidden: false,
             };
-            let entity = self.body(
-                compound.clone(),
-                Motion::Dynamic,
-                pin_mass(pin),
-                pose,
-                shown,
-            );
+            let entity = self.body(def, shown);
             let state = Pin {
                 number,
                 spot,
@@ -266,25 +232,13 @@ impl<'a> Builder<'a> {
         let mut balls = Vec::new();
         for ((index, ball), home) in (0..).zip(&self.config.balls).zip(homes) {
             let radius = ball.radius_m();
-            let compound = Arc::new(Compound::single(Shape::sphere(radius)?));
-            let inertia = DVec3::splat(ball.mass_kg * ball.rg_m * ball.rg_m);
-            let mass = MassProperties {
-                mass: ball.mass_kg,
-                inertia,
-            };
             let shown = Shown {
                 model: Model::Ball(index),
                 size: DVec3::splat(ball.diameter_m),
                 body_from_model: Pose::IDENTITY,
                 is_hidden: false,
             };
-            let entity = self.body(
-                compound,
-                Motion::Dynamic,
-                mass,
-                Pose::from_position(home),
-                shown,
-            );
+            let entity = self.body(bodies::ball(self.config, ball, home)?, shown);
             let state = Ball {
                 index,
                 home,
@@ -304,10 +258,7 @@ impl<'a> Builder<'a> {
     fn button(&mut self, model: Model, side: f64) -> Result<Entity, ShapeError> {
         let desk = &self.config.desk;
         let half_height = (desk.button_travel_m + BUTTON_ROOT) / 2.0;
-        let compound = Arc::new(Compound::single(Shape::cylinder(
-            desk.button_radius_m,
-            half_height,
-        )?));
+        let shape = Shape::cylinder(desk.button_radius_m, half_height)?;
         let width = 2.0 * desk.button_radius_m;
         let shown = Shown {
             model,
@@ -321,7 +272,7 @@ impl<'a> Builder<'a> {
             is_pressed: false,
         };
         let pose = button_pose(self.config, &state);
-        let entity = self.body(compound, Motion::Driven, immovable(), pose, shown);
+        let entity = self.driven(shape, pose, shown);
         self.add(entity, (state,));
         Ok(entity)
     }
@@ -334,14 +285,8 @@ impl<'a> Builder<'a> {
             body_from_model: Pose::IDENTITY,
             is_hidden: true,
         };
-        let compound = Arc::new(Compound::single(Shape::sphere(radius)?));
-        let entity = self.body(
-            compound,
-            Motion::Driven,
-            immovable(),
-            Pose::from_position(DVec3::Y),
-            shown,
-        );
+        let pose = Pose::from_position(DVec3::Y);
+        let entity = self.driven(Shape::sphere(radius)?, pose, shown);
         self.pass_through(entity);
         Ok(entity)
     }
@@ -358,9 +303,8 @@ impl<'a> Builder<'a> {
             body_from_model: Pose::IDENTITY,
             is_hidden: false,
         };
-        let compound = Arc::new(Compound::single(Shape::cuboid(size / 2.0)?));
         let pose = crate::pinsetter::bar_at_rest(self.config);
-        let entity = self.body(compound, Motion::Driven, immovable(), pose, shown);
+        let entity = self.driven(Shape::cuboid(size / 2.0)?, pose, shown);
         self.pass_through(entity);
         Ok(entity)
     }
@@ -387,12 +331,4 @@ pub(crate) fn button_pose(config: &Config, button: &PushButton) -> Pose {
     let top = config.desk.button_travel_m - button.depression;
     let half_height = (config.desk.button_travel_m + BUTTON_ROOT) / 2.0;
     Pose::from_position(button.foot + DVec3::Y * (top - half_height))
-}
-
-/// Mass of what is fixed or driven: physics asks for one and does not use it.
-fn immovable() -> MassProperties {
-    MassProperties {
-        mass: 1.0,
-        inertia: DVec3::ONE,
-    }
 }

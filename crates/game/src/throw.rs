@@ -2,10 +2,12 @@
 
 use glam::DVec3;
 use hecs::Entity;
+use physics::{Body, Pose};
 
 use crate::Game;
 use crate::alley;
 use crate::components::{Ball, Journey, Pin, PinKeeper};
+use crate::config::Config;
 use crate::event::{EndReason, EventKind};
 use crate::pinsetter::Cycle;
 use crate::room::Room;
@@ -213,10 +215,9 @@ fn ball_is_done(room: &Room, entity: Entity) -> bool {
 }
 
 /// Where the middle of a pin's base is [m], and its axis.
-pub(crate) fn base_and_axis(room: &Room, pin: Entity) -> (DVec3, DVec3) {
-    let pose = room.body(pin).pose();
-    let axis = pose.rotation * DVec3::Y;
-    (pose.position - axis * room.config.pin.cg_height_m, axis)
+pub(crate) fn base_and_axis(config: &Config, pin: Pose) -> (DVec3, DVec3) {
+    let axis = pin.rotation * DVec3::Y;
+    (pin.position - axis * config.pin.cg_height_m, axis)
 }
 
 /// Whether a pin is above the deck, and so could fall or stand on it.
@@ -228,35 +229,40 @@ fn is_over_deck(room: &Room, pin: Entity) -> bool {
         && at.y > -room.config.rules.left_deck_below_m
 }
 
-/// Whether a pin counts as fallen: it leans, has left the deck, or lies against a kickback.
+/// Whether a pin counts as fallen.
 pub(crate) fn is_down(room: &Room, pin: Entity) -> bool {
-    if room.get::<Pin>(pin).keeper == PinKeeper::Store || room.body(pin).is_frozen() {
-        return true;
-    }
-    let (base, axis) = base_and_axis(room, pin);
-    leans(room, axis) || has_left_deck(room, base) || lies_against_kickback(room, base, axis)
+    let body = room.body(pin);
+    room.get::<Pin>(pin).keeper == PinKeeper::Store || body_is_down(&room.config, body)
 }
 
-fn leans(room: &Room, axis: DVec3) -> bool {
-    axis.angle_between(DVec3::Y) > room.config.rules.down_lean_deg.to_radians()
+/// Whether a pin's body counts as fallen: it leans, has left the deck, or lies against a kickback.
+pub(crate) fn body_is_down(config: &Config, pin: &Body) -> bool {
+    let (base, axis) = base_and_axis(config, pin.pose());
+    pin.is_frozen()
+        || leans(config, axis)
+        || has_left_deck(config, base)
+        || lies_against_kickback(config, base, axis)
 }
 
-fn has_left_deck(room: &Room, base: DVec3) -> bool {
-    let lane = &room.config.lane;
+fn leans(config: &Config, axis: DVec3) -> bool {
+    axis.angle_between(DVec3::Y) > config.rules.down_lean_deg.to_radians()
+}
+
+fn has_left_deck(config: &Config, base: DVec3) -> bool {
+    let lane = &config.lane;
     let beside = base.x.abs() > lane.width_m / 2.0;
-    let before_or_behind =
-        !(lane.deck_end_z_m..alley::deck_front_z(&room.config)).contains(&base.z);
-    let height = -room.config.rules.left_deck_below_m..LEFT_DECK_ABOVE;
+    let before_or_behind = !(lane.deck_end_z_m..alley::deck_front_z(config)).contains(&base.z);
+    let height = -config.rules.left_deck_below_m..LEFT_DECK_ABOVE;
     beside || before_or_behind || !height.contains(&base.y)
 }
 
 /// The pin's widest place and its head are what can touch a kickback.
-fn lies_against_kickback(room: &Room, base: DVec3, axis: DVec3) -> bool {
-    let parts = &room.config.pin.parts;
+fn lies_against_kickback(config: &Config, base: DVec3, axis: DVec3) -> bool {
+    let parts = &config.pin.parts;
     let reach = |height: f64, radius: f64| (base + axis * height).x.abs() + radius;
     let widest = reach(parts.belly_height_m, parts.belly_radius_m)
         .max(reach(parts.head_height_m, parts.head_radius_m));
-    widest > alley::kickback_x(&room.config) - room.config.rules.against_kickback_m
+    widest > alley::kickback_x(config) - config.rules.against_kickback_m
 }
 
 /// Pins of this rack that are down, and those that stand.

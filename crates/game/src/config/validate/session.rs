@@ -1,7 +1,7 @@
 //! Which steps, rules, machines, displays and scripted participants are possible.
 
 use super::{Invalid, limited, ranges, relation};
-use crate::config::{Config, DisplayProfile};
+use crate::config::{Config, CoulombConfig, DisplayProfile};
 
 /// How the world steps, of what it is made, and how often it is looked at.
 pub(super) fn physics(config: &Config) -> Result<(), Invalid> {
@@ -32,6 +32,7 @@ pub(super) fn physics(config: &Config) -> Result<(), Invalid> {
             ("friction_rate", config.objects.friction_rate, 0.0, 1.0),
         ],
     )?;
+    coulomb(&config.coulomb)?;
     ranges("tracking", &[("rate_hz", rate, 20.0, 1000.0)])?;
     let steps = physics.step_hz / rate;
     relation(
@@ -41,6 +42,21 @@ pub(super) fn physics(config: &Config) -> Result<(), Invalid> {
         (steps - steps.round()).abs() < 1e-9 && steps >= 1.0,
         "must divide physics.step_hz, so that a frame is a whole number of steps",
     )
+}
+
+/// Physical coefficients of pairs.
+fn coulomb(coulomb: &CoulombConfig) -> Result<(), Invalid> {
+    let named = coulomb.pairs().map(|(key, _, _, pair)| (key, pair));
+    for (key, pair) in named.into_iter().chain([("other", coulomb.other)]) {
+        ranges(
+            &format!("coulomb.{key}"),
+            &[
+                ("restitution", pair.restitution, 0.0, 1.0),
+                ("friction", pair.friction, 0.0, 10.0),
+            ],
+        )?;
+    }
+    Ok(())
 }
 
 /// What is down, and when a throw ends.
