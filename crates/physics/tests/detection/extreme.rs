@@ -4,6 +4,7 @@ use glam::DVec3;
 use physics::Pose;
 use physics::query::Limits;
 
+use crate::judge::built::put_together;
 use crate::judge::cases::{Case, between, direction, rotation};
 use crate::judge::known::Known;
 use crate::support::Random;
@@ -52,5 +53,42 @@ fn sizes_and_places_of_any_magnitude() {
             });
         }
     }
+    wrong.end();
+}
+
+/// A shape a thousand times as long as it is thick, or as wide.
+fn slender(random: &mut Random) -> Known {
+    let plate = random.next() < 0.0;
+    let (across, along) = if plate { (1.0, 1e-3) } else { (1e-3, 1.0) };
+    match between(random, 0.0, 4.0) as i32 {
+        0 => Known::Frustum(across, across, along),
+        1 => Known::Ellipsoid(DVec3::new(across, along, across)),
+        2 => Known::Cuboid(DVec3::new(across, along, across)),
+        _ if plate => Known::Frustum(across, 0.5 * across, along),
+        _ => Known::Capsule(across, along),
+    }
+}
+
+/// Needles and plates 1:1000 that are apart: the gap is right, or the answer says that it did not get there.
+#[test]
+fn needles_and_plates_apart() {
+    let mut wrong = Wrong::default();
+    let mut random = Random(1000);
+    let mut capped = 0;
+    let poses = 2000;
+    for i in 0..poses {
+        let (a, b) = (slender(&mut random), slender(&mut random));
+        let built = put_together(a, b, 0.02, &mut random);
+        let found = ask(&built.case, None, Limits::default());
+        let off = (found.gap - built.gap).abs() / built.case.size();
+        capped += usize::from(found.capped);
+        wrong.unless(found.gap <= built.gap + 1e-12, || format!("{i}: {found:?}"));
+        wrong.unless(off < 1e-6 || found.capped, || {
+            format!("{i}: off by {off:.1e}, {:?} {found:?}", built.case)
+        });
+    }
+    wrong.unless(capped * 100 <= poses, || {
+        format!("{capped} of {poses} poses did not end")
+    });
     wrong.end();
 }
