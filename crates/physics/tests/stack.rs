@@ -24,7 +24,7 @@ fn world(friction: f64) -> World {
         },
         ..Settings::default()
     };
-    let mut world = World::new(settings).unwrap();
+    let mut world = World::new(settings).expect("settings are valid");
     let m = material(0.0, 0.5);
     world.add(block(
         m,
@@ -50,7 +50,7 @@ fn body(shape: Shape, mass: f64, inertia: DVec3, pose: Pose) -> BodyDef {
 }
 
 fn cube(side: f64, mass: f64, at: DVec3) -> BodyDef {
-    let shape = Shape::cuboid(DVec3::splat(side / 2.0)).unwrap();
+    let shape = Shape::cuboid(DVec3::splat(side / 2.0)).expect("sizes are positive");
     let inertia = DVec3::splat(side * side / 6.0);
     body(shape, mass, inertia, Pose::from_position(at))
 }
@@ -58,7 +58,12 @@ fn cube(side: f64, mass: f64, at: DVec3) -> BodyDef {
 fn cylinder(radius: f64, half: f64, mass: f64, pose: Pose) -> BodyDef {
     let across = (3.0 * radius * radius + 4.0 * half * half) / 12.0;
     let inertia = DVec3::new(across, radius * radius / 2.0, across);
-    body(Shape::cylinder(radius, half).unwrap(), mass, inertia, pose)
+    body(
+        Shape::cylinder(radius, half).expect("sizes are positive"),
+        mass,
+        inertia,
+        pose,
+    )
 }
 
 fn run(world: &mut World, seconds: f64) {
@@ -131,7 +136,7 @@ fn a_box_slides_where_the_slope_is_steeper_than_its_friction() {
             sleeping: false,
             ..*world(mu).settings()
         };
-        let mut world = World::new(settings).unwrap();
+        let mut world = World::new(settings).expect("settings are valid");
         let m = material(0.0, 0.5);
         world.add(block(
             m,
@@ -157,7 +162,7 @@ fn a_box_dropped_flat_bounces_flat() {
         response: Response::Guarded,
         ..Settings::default()
     };
-    let mut world = World::new(settings).unwrap();
+    let mut world = World::new(settings).expect("settings are valid");
     let m = material(1.0, 0.0);
     world.add(block(
         m,

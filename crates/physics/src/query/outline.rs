@@ -21,6 +21,10 @@ const SAME: f64 = 1e-9;
 pub(super) type Corners<T> = ArrayVec<T, MOST>;
 
 /// What a shape is farthest with along a normal.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "a face lives on the stack for one look; a box would allocate in every step"
+)]
 pub(super) enum Face {
     /// A single point, or a spot of curved surface.
     Point,
