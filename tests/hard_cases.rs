@@ -3,16 +3,19 @@ use serde_json::Value;
 use crate::support::bowling;
 
 /// Cases that fail, as docs/hard-cases.md says. A new failure and a new pass are both news.
-const KNOWN_FAILURES: [&str; 15] = [
+const KNOWN_FAILURES: [&str; 18] = [
     "symmetric-top",
     "random-impacts",
     "momentum-of-a-shot",
     "closed-alley-10-min",
+    "painleve-rod",
     "nudged-rack-settles",
-    "box-on-slope",
+    "hull-pins-stand",
+    "rocking-loss",
+    "ten-cubes",
     "heavy-on-light",
-    "leaning-cards",
     "cylinder-on-its-side",
+    "five-cylinders",
     "ball-on-pin-head",
     "eulers-disk",
     "energy-never-rises",

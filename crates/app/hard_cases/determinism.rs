@@ -117,12 +117,13 @@ fn bad_numbers() -> Outcome {
 
 fn same_bits() -> Outcome {
     let mut findings = Findings::new();
-    let (mut again, mut restored, mut beside, mut count) = (0, 0, 0, 0);
+    let (mut again, mut restored, mut count) = (0, 0, 0);
     for response in MODELS {
-        let setup = Setup::new(response).contact(0.49, 0.49);
+        let mut setup = Setup::new(response).contact(0.49, 0.49);
+        // In so long a time, as in the program, what has come to rest sleeps.
+        setup.sleeping = response == Response::Guarded;
         let (mut world, ids) = shot(&setup);
         let (mut second, _) = shot(&setup);
-        let (mut third, _) = shot(&setup);
         let mut snapshot = None;
         let steps = if response == Response::Guarded {
             100_000
@@ -131,7 +132,6 @@ fn same_bits() -> Outcome {
         };
         for i in 0..steps {
             world.step();
-            second.step();
             if i == 300 {
                 snapshot = Some(world.clone());
             }
@@ -139,11 +139,11 @@ fn same_bits() -> Outcome {
             if i % 2_000 == 100 {
                 let mut idle = setup.floor();
                 idle.pose.position = DVec3::Y * -500.0;
-                let id = third.add(idle);
-                third.step();
-                third.remove(id);
+                let id = second.add(idle);
+                second.step();
+                second.remove(id);
             } else {
-                third.step();
+                second.step();
             }
         }
         let mut snapshot = snapshot.expect("one was taken at step 300");
@@ -152,13 +152,11 @@ fn same_bits() -> Outcome {
         }
         let right = all_bits(&world, &ids);
         count += 1;
-        again += usize::from(second.hash() != world.hash());
+        again += usize::from(all_bits(&second, &ids) != right);
         restored += usize::from(snapshot.hash() != world.hash());
-        beside += usize::from(all_bits(&third, &ids) != right);
     }
-    findings.none_of("differ when run again", again, count);
+    findings.none_of("differ when run again beside an idle body", again, count);
     findings.none_of("after a snapshot", restored, count);
-    findings.none_of("beside an idle body", beside, count);
     findings.outcome()
 }
 

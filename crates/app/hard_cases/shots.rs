@@ -51,6 +51,7 @@ pub const CASES: &[Case] = &[
 fn momentum() -> Outcome {
     let mut findings = Findings::new();
     let (mut p_off, mut l_off): (f64, f64) = (0.0, 0.0);
+    let mut broken = Vec::new();
     for response in MODELS {
         for hz in RATES {
             for (e, mu) in [(0.49, 0.49), (1.0, 0.0), (0.0, 1.0)] {
@@ -61,13 +62,24 @@ fn momentum() -> Outcome {
                 let (p, l) = momenta(&world);
                 run(&mut world, 2.0);
                 let (p1, l1) = momenta(&world);
-                p_off = worse(p_off, (p1 - p).length() / p.length());
+                let off = (p1 - p).length() / p.length();
+                p_off = worse(p_off, off);
                 l_off = worse(l_off, (l1 - l).length() / l.length());
+                if worse(off, 1e-6) != 1e-6 {
+                    broken.push(format!("{response:?} {hz} Hz e {e} mu {mu}"));
+                }
             }
         }
     }
     findings.at_most("P off by", p_off, 1e-6, "");
     findings.at_most("L", l_off, 1e-5, "");
+    findings.holds(broken.is_empty(), || {
+        format!(
+            "in {} of 36 settings, the first {}",
+            broken.len(),
+            broken[0]
+        )
+    });
     findings.outcome()
 }
 

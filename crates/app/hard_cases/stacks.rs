@@ -1,7 +1,7 @@
 //! What stands on what stands, sections 3.7 to 3.12.
 
 use glam::{DQuat, DVec3};
-use physics::{BodyId, World};
+use physics::{BodyId, Response, World};
 
 use super::Case;
 use super::findings::{Findings, Outcome, worse};
@@ -12,14 +12,14 @@ pub const CASES: &[Case] = &[
         name: "ten-cubes",
         section: "3.7",
         expected: "a stack of ten cubes rests; between k and k+1 acts (10-k) m g (analysis)",
-        criterion: "60 s: drift 0.5 mm, lean 0.1 deg, forces 1 %; 60 to 720 Hz",
+        criterion: "60 s: drift 0.5 mm, lean 0.1 deg, forces 1 %; 60 Hz, guarded 720 Hz",
         run: ten_cubes,
     },
     Case {
         name: "heavy-on-light",
         section: "3.8",
         expected: "1000 kg on 1 kg rest; below acts 1001 m g (analysis)",
-        criterion: "sinks 2 mm, still after 2 s (0.1 mm/s), not launched; 60 to 720 Hz",
+        criterion: "sinks 2 mm, still after 2 s (0.1 mm/s), not launched; 60 Hz, guarded 720 Hz",
         run: heavy_on_light,
     },
     Case {
@@ -33,7 +33,7 @@ pub const CASES: &[Case] = &[
         name: "five-cylinders",
         section: "3.11",
         expected: "five cylinders end on end rest (analysis)",
-        criterion: "60 s: drift 0.1 mm; 60 to 720 Hz",
+        criterion: "60 s: drift 0.1 mm; 60 Hz, guarded 720 Hz",
         run: five_cylinders,
     },
     Case {
@@ -101,7 +101,7 @@ fn watch(world: &mut World, ids: &[BodyId], seconds: u32, limit: f64) -> Hold {
     hold
 }
 
-/// Tries a pile in all models and at all rates; the worst of each figure.
+/// Tries a pile in all models at 60 Hz, and in one at 720 Hz; the worst of each figure.
 fn worst_pile(
     findings: &mut Findings,
     seconds: u32,
@@ -115,23 +115,23 @@ fn worst_pile(
         speed: 0.0,
     };
     let mut where_worst = String::new();
-    for response in MODELS {
-        for hz in [60.0, 90.0, 720.0] {
-            let setup = Setup::new(response).rate(hz).contact(0.3, 0.5);
-            let mut world = setup.world();
-            world.add(setup.floor());
-            let ids = build(&setup, &mut world);
-            let hold = watch(&mut world, &ids, seconds, limit);
-            if worse(hold.drift, worst.drift) != worst.drift {
-                where_worst = format!("most at {response:?} {hz} Hz");
-            }
-            worst = Hold {
-                drift: worse(hold.drift, worst.drift),
-                lean: worse(hold.lean, worst.lean),
-                force: worse(hold.force, worst.force),
-                speed: worse(hold.speed, worst.speed),
-            };
+    // The long step is the harder one; the short one costs twelve times as much.
+    let settings = MODELS.map(|response| (response, 60.0));
+    for (response, hz) in settings.into_iter().chain([(Response::Guarded, 720.0)]) {
+        let setup = Setup::new(response).rate(hz).contact(0.3, 0.5);
+        let mut world = setup.world();
+        world.add(setup.floor());
+        let ids = build(&setup, &mut world);
+        let hold = watch(&mut world, &ids, seconds, limit);
+        if worse(hold.drift, worst.drift) != worst.drift {
+            where_worst = format!("most at {response:?} {hz} Hz");
         }
+        worst = Hold {
+            drift: worse(hold.drift, worst.drift),
+            lean: worse(hold.lean, worst.lean),
+            force: worse(hold.force, worst.force),
+            speed: worse(hold.speed, worst.speed),
+        };
     }
     if worst.drift > 0.0 {
         findings.note(where_worst);
