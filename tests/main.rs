@@ -16,6 +16,8 @@ mod recording;
 mod release;
 /// Throws without hands, one and many.
 mod shot;
+/// Maps of strikes, and what cannot be mapped.
+mod strike_map;
 /// Folders, and the real program.
 mod support;
 /// A person bowls in a real window.

@@ -262,6 +262,32 @@ fn right_and_left_fell_as_many() {
     assert!(right > 5.0 && limit < 0.7, "{right} pins, limit {limit}");
 }
 
+/// A small edition of `examples/step_rates.rs`: the 99 % interval of the difference between 1/90 s and 1/720 s.
+#[test]
+fn the_step_hardly_changes_how_many_fall() {
+    let run = |rate| {
+        let jitters = [
+            "--jitter-offset",
+            "0.08",
+            "--jitter-speed",
+            "0.4",
+            "--seed",
+            "1997",
+        ];
+        let many = ["--repeat", "160", "--duration", "2.5", "--frame-rate", rate];
+        throws(&[&jitters[..], &many].concat())
+    };
+    let each: Vec<f64> = run("90")
+        .iter()
+        .zip(&run("720"))
+        .map(|(a, b)| fallen(a).len() as f64 - fallen(b).len() as f64)
+        .collect();
+    let mean = each.iter().sum::<f64>() / 160.0;
+    let variance = each.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / 159.0;
+    let half = 2.576 * (variance / 160.0).sqrt();
+    assert!(mean.abs() + half < 0.3, "{mean} pins, interval of {half}");
+}
+
 #[test]
 fn the_distribution_counts_every_throw() {
     let output = shot(&[

@@ -7,7 +7,9 @@ use std::path::PathBuf;
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 
-pub use throw::{ModelChoice, PinNumbers, ShapeChoice, ShotArguments, ThrowArguments};
+pub use throw::{
+    ModelChoice, PinNumbers, ShapeChoice, ShotArguments, Span, StrikeMapArguments, ThrowArguments,
+};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -61,9 +63,12 @@ impl Arguments {
             );
             return Err(unusable(problem));
         }
-        if let Some(Command::Shot(shot)) = &self.command
-            && let Some(problem) = shot.contradiction()
-        {
+        let problem = match &self.command {
+            Some(Command::Shot(shot)) => shot.contradiction(),
+            Some(Command::StrikeMap(map)) => map.contradiction(),
+            _ => None,
+        };
+        if let Some(problem) = problem {
             return Err(unusable(problem));
         }
         Ok(self)
@@ -107,6 +112,12 @@ pub enum Command {
     /// before and after, and what it cost; with --repeat how that is distributed. docs/shot.md
     /// explains every number.
     Shot(ShotArguments),
+    /// Map how often all pins fall, by the offset and the angle at which the ball comes to the head pin.
+    ///
+    /// Writes strike-map.csv (shares of strikes and mean pins with their 95 % intervals) and
+    /// strike-map.svg. The same arguments give the same map. docs/strike-map.md compares maps with
+    /// what is published.
+    StrikeMap(StrikeMapArguments),
 }
 
 /// Who or what bowls.

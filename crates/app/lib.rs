@@ -1,7 +1,7 @@
 //! The `bowling` program: who bowls, what is recorded, what is drawn.
 //!
-//! Entry points: [`run`] reads the command line; [`play`], [`replay`], [`query`], [`hard_cases`] and
-//! [`shot`] are the commands; a [`session::Session`] takes one input per displayed frame from any device.
+//! Entry points: [`run`] reads the command line; [`play`], [`replay`], [`query`], [`hard_cases`],
+//! [`shot`] and [`strike_map`] are the commands; a [`session::Session`] takes one input per displayed frame from any device.
 
 pub mod args;
 pub mod boundary;
@@ -22,6 +22,7 @@ pub mod root;
 pub mod scenery;
 pub mod session;
 pub mod shot;
+pub mod strike_map;
 pub mod window;
 
 use std::ffi::OsString;
@@ -74,5 +75,8 @@ fn obey(arguments: &Arguments) -> Result<()> {
         Some(Command::Query(arguments)) => query::query(arguments),
         Some(Command::HardCases(arguments)) => hard_cases::hard_cases(arguments),
         Some(Command::Shot(shot)) => shot::shot(shot, &root::find(arguments.root.as_deref())?),
+        Some(Command::StrikeMap(map)) => {
+            strike_map::strike_map(map, &root::find(arguments.root.as_deref())?)
+        }
     }
 }

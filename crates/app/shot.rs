@@ -103,6 +103,22 @@ fn many(arguments: &ShotArguments, alley: &BareAlley) -> Result<()> {
     output.flush().context(UNWRITTEN)
 }
 
+/// Numbers of pins that fell, throw by throw.
+///
+/// # Errors
+/// When the arguments or the scene's settings cannot be used.
+pub fn fallen_counts(arguments: &ShotArguments, root: &Path) -> Result<Vec<usize>> {
+    let alley = alley(&arguments.throw, root)?;
+    let threads = series::threads(arguments.throw.threads);
+    let mut counts = Vec::new();
+    let throw = |index| throw(arguments, &alley, index);
+    series::run(arguments.repeat, threads, throw, |shot| {
+        counts.push(shot?.outcome.fallen.len());
+        anyhow::Ok(())
+    })?;
+    Ok(counts)
+}
+
 /// The release of throw `index`, with its own share of jitter.
 fn release(arguments: &ShotArguments, index: u64, jitter: bool) -> Release {
     let mut random = SplitMix64::for_index(arguments.throw.seed, index);

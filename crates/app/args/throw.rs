@@ -4,6 +4,9 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
+/// Most values of a span.
+const MOST_VALUES: u32 = 400;
+
 /// Which law answers collisions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 #[value(rename_all = "snake_case")]
@@ -150,23 +153,91 @@ pub struct ShotArguments {
     pub record: Option<PathBuf>,
 }
 
+/// Arguments of `bowling strike-map`.
+#[derive(Debug, Args)]
+pub struct StrikeMapArguments {
+    /// What every throw has.
+    #[command(flatten)]
+    pub throw: ThrowArguments,
+
+    /// Where the ball's middle passes the head pin's spot, in metres to the right of it: first, last and step.
+    #[arg(long, value_name = "FROM:TO:STEP", allow_hyphen_values = true, default_value = "0:0.18:0.01", value_parser = span_of(0.5, "metres"))]
+    pub offsets: Span,
+
+    /// Entry angles, in degrees to the left, as a right-hander's ball comes: first, last and step.
+    #[arg(long, value_name = "FROM:TO:STEP", allow_hyphen_values = true, default_value = "-2:8:1", value_parser = span_of(45.0, "degrees"))]
+    pub angles: Span,
+
+    /// Throws for each pair of offset and angle, spread evenly over half a step to all sides.
+    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    pub shots: u64,
+
+    /// Standard deviation of the speed, in m/s.
+    #[arg(long, value_name = "SD", allow_negative_numbers = true, default_value_t = 0.2, value_parser = within(0.0, 100.0, "m/s"))]
+    pub jitter_speed: f64,
+
+    /// Folder for strike-map.csv and strike-map.svg [default: out/strike-map-MODEL].
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+/// Evenly spaced values.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Span {
+    /// First value.
+    pub from: f64,
+    /// Distance between neighbours.
+    pub step: f64,
+    /// How many.
+    pub count: u32,
+}
+
+impl ModelChoice {
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            ModelChoice::UnoSlater => "uno_slater",
+            ModelChoice::Guarded => "guarded",
+            ModelChoice::Coulomb => "coulomb",
+        }
+    }
+}
+
+impl Span {
+    /// Value `index`.
+    pub fn at(&self, index: u32) -> f64 {
+        self.from + self.step * f64::from(index)
+    }
+
+    /// The last value.
+    pub fn last(&self) -> f64 {
+        self.at(self.count - 1)
+    }
+}
+
+impl StrikeMapArguments {
+    /// Why the arguments contradict each other, if they do.
+    pub fn contradiction(&self) -> Option<String> {
+        stopped(self.throw.speed, self.jitter_speed)
+    }
+}
+
 impl ShotArguments {
     /// Why the arguments contradict each other, if they do.
     pub fn contradiction(&self) -> Option<String> {
         if self.record.is_some() && self.repeat > 1 {
             return Some("--record keeps one throw: leave out --repeat".to_owned());
         }
-        // No jitter is beyond six standard deviations.
-        let slowest = self.throw.speed - 6.0 * self.jitter_speed;
-        (slowest <= 0.0).then(|| {
-            format!(
-                "--jitter-speed {} could stop a ball of {} m/s: give at most {}",
-                self.jitter_speed,
-                self.throw.speed,
-                self.throw.speed / 6.0
-            )
-        })
+        stopped(self.throw.speed, self.jitter_speed)
     }
+}
+
+/// Why a speed cannot have so much jitter, of which none is beyond six standard deviations.
+fn stopped(speed: f64, jitter: f64) -> Option<String> {
+    (speed - 6.0 * jitter <= 0.0).then(|| {
+        let most = speed / 6.0;
+        format!("--jitter-speed {jitter} could stop a ball of {speed} m/s: give less than {most}")
+    })
 }
 
 /// A parser of numbers in a range; the words say what of.
@@ -178,6 +249,33 @@ pub(super) fn within(
     move |text| match text.parse() {
         Ok(value) if (low..=high).contains(&value) => Ok(value),
         _ => Err(format!("give a number from {low} to {high} {words}")),
+    }
+}
+
+/// A parser of evenly spaced values that lie within `limit` of zero.
+fn span_of(
+    limit: f64,
+    words: &'static str,
+) -> impl Fn(&str) -> Result<Span, String> + Clone + Send + Sync + 'static {
+    move |text| {
+        let numbers: Vec<f64> = text.split(':').filter_map(|n| n.parse().ok()).collect();
+        if let [from, to, step] = numbers[..]
+            && text.split(':').count() == 3
+            && from.abs() <= limit
+            && to.abs() <= limit
+            && from <= to
+            && step > 0.0
+        {
+            // The last value is met when it is a whole number of steps away but for rounding.
+            let steps = ((to - from) / step + 1e-9).floor();
+            if steps < f64::from(MOST_VALUES) {
+                let count = steps as u32 + 1;
+                return Ok(Span { from, step, count });
+            }
+        }
+        Err(format!(
+            "give FROM:TO:STEP from -{limit} to {limit} {words}, rising, with at most {MOST_VALUES} values"
+        ))
     }
 }
 
