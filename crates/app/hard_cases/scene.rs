@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
 use physics::{
-    Body, BodyDef, BodyId, Compound, MassProperties, Material, Motion, PairContact, Pose, Response,
-    Settings, Shape, Surface, World,
+    Body, BodyDef, BodyId, Compound, Effect, Effects, MassProperties, Material, Motion,
+    PairContact, Pose, Response, Settings, Shape, Surface, World,
 };
 
 use crate::random::SplitMix64;
@@ -91,7 +91,7 @@ impl Setup {
             step_hz: self.step_hz,
             gravity: self.gravity,
             response: self.response,
-            sleeping: self.sleeping,
+            effects: Effects::default().set(Effect::Sleeping, self.sleeping),
             contact: PairContact {
                 restitution: self.elasticity,
                 friction: self.friction,
@@ -120,6 +120,7 @@ impl Setup {
             pose: Pose::from_position(position),
             linear_velocity: DVec3::ZERO,
             angular_velocity: DVec3::ZERO,
+            drag_area_m2: 0.0,
         }
     }
 

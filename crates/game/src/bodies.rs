@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use physics::{
-    BodyDef, Compound, MassProperties, Material, Motion, Pose, Response, Settings, SettingsError,
-    Shape, ShapeError, Surface, World,
+    BodyDef, Compound, Effect, Effects, MassProperties, Material, Motion, Pose, Response, Settings,
+    SettingsError, Shape, ShapeError, Surface, World,
 };
 
 use crate::alley::Part;
@@ -29,8 +29,9 @@ pub(crate) fn world(config: &Config) -> Result<World, SettingsError> {
         },
         iteration_cap: physics.iteration_cap,
         friction_reference_s: physics.friction_reference_s,
-        sleeping: physics.sleeping,
+        effects: Effects::default().set(Effect::Sleeping, physics.sleeping),
         contact: config.coulomb.other.contact(),
+        ..Settings::default()
     })?;
     for (_, a, b, pair) in config.coulomb.pairs() {
         world.set_pair(a, b, pair.contact())?;
@@ -60,6 +61,7 @@ pub(crate) fn body(
         pose,
         linear_velocity: DVec3::ZERO,
         angular_velocity: DVec3::ZERO,
+        drag_area_m2: 0.0,
     }
 }
 

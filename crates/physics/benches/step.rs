@@ -8,7 +8,7 @@
 mod support;
 
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
-use physics::{Settings, World};
+use physics::{Effect, Effects, Settings, World};
 use support::{alley, composite_pin, ellipsoid_pin, material, throw};
 
 const TENTH: u32 = 9;
@@ -18,7 +18,7 @@ const RATE: f64 = 90.0;
 fn settings(sleeping: bool) -> Settings {
     Settings {
         step_hz: RATE,
-        sleeping,
+        effects: Effects::default().set(Effect::Sleeping, sleeping),
         ..Settings::default()
     }
 }

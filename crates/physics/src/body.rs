@@ -8,10 +8,13 @@ use std::sync::Arc;
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::compound::Compound;
+use crate::effects::Effect;
+use crate::oil::OilPattern;
 use crate::pose::Pose;
+use crate::world::Settings;
 
 pub use def::{BodyDef, MassProperties, Material, Motion};
-pub(crate) use motion::{Sweep, turn};
+pub(crate) use motion::{Spin, Sweep, turn};
 
 /// Rates of a body that nothing carries.
 const STRAIGHT: [(DVec3, DVec3); 2] = [(DVec3::ZERO, DVec3::ZERO); 2];
@@ -24,6 +27,12 @@ pub struct Body {
     pub(crate) mass: MassProperties,
     pub(crate) material: Material,
     pub(crate) collides: bool,
+    /// Whether it collides and meets others; see `World::decide_meeting`.
+    pub(crate) meets: bool,
+    pub(crate) spin: Spin,
+    /// `1/2 rho C_d A / m` [1/m].
+    pub(crate) drag: f64,
+    pub(crate) oil: Option<Arc<OilPattern>>,
     pub(crate) asleep: bool,
     pub(crate) frozen: bool,
     pub(crate) position: DVec3,
@@ -75,13 +84,22 @@ pub struct Body {
 }
 
 impl Body {
-    pub(crate) fn new(def: BodyDef) -> Body {
+    pub(crate) fn new(def: BodyDef, settings: &Settings) -> Body {
+        let drag = if settings.effects.contains(Effect::Drag) {
+            0.5 * settings.air_density_kgpm3 * def.drag_area_m2 / def.mass.mass
+        } else {
+            0.0
+        };
         let mut body = Body {
             compound: def.compound,
             motion: def.motion,
             mass: def.mass,
             material: def.material,
             collides: true,
+            meets: true,
+            spin: Spin::new(&def.mass, settings.effects),
+            drag,
+            oil: None,
             asleep: false,
             frozen: false,
             position: def.pose.position,
@@ -126,12 +144,12 @@ impl Body {
     /// Angular velocity [rad/s], world frame.
     pub fn angular_velocity(&self) -> DVec3 {
         match self.motion {
-            Motion::Dynamic => {
+            Motion::Dynamic if self.spin != Spin::Never => {
                 let local = self.rotation.conjugate() * self.momentum_now();
                 self.rotation * (local / self.mass.inertia)
             }
             Motion::Driven => self.turning,
-            Motion::Fixed => DVec3::ZERO,
+            Motion::Dynamic | Motion::Fixed => DVec3::ZERO,
         }
     }
 
@@ -250,9 +268,11 @@ impl Body {
         self.halt();
         match self.motion {
             Motion::Dynamic => {
-                let local = self.rotation.conjugate() * angular;
                 self.linear = linear;
-                self.momentum = self.rotation * (local * self.mass.inertia);
+                if self.spin != Spin::Never {
+                    let local = self.rotation.conjugate() * angular;
+                    self.momentum = self.rotation * (local * self.mass.inertia);
+                }
             }
             Motion::Driven => (self.linear, self.turning) = (linear, angular),
             Motion::Fixed => {}
@@ -276,9 +296,9 @@ impl Body {
         }
     }
 
-    /// Inverse inertia, world frame; zero for what nothing moves.
+    /// Inverse inertia, world frame; zero for what nothing moves or turns.
     pub(crate) fn inv_inertia(&self) -> DMat3 {
-        if !self.is_dynamic() {
+        if !self.is_dynamic() || self.spin == Spin::Never {
             return DMat3::ZERO;
         }
         let i = self.mass.inertia;
@@ -289,8 +309,11 @@ impl Body {
         r * DMat3::from_diagonal(i.recip()) * r.transpose()
     }
 
-    /// Inertia, world frame [kg m2].
+    /// Inertia, world frame [kg m2]; zero for what does not turn, so that its angular momentum stays zero.
     pub(crate) fn inertia(&self) -> DMat3 {
+        if self.spin == Spin::Never {
+            return DMat3::ZERO;
+        }
         let i = self.mass.inertia;
         if i.x == i.y && i.y == i.z {
             return DMat3::from_diagonal(i);
@@ -303,7 +326,9 @@ impl Body {
     pub(crate) fn push(&mut self, arm: DVec3, impulse: DVec3) {
         if self.is_dynamic() {
             self.linear += impulse / self.mass.mass;
-            self.momentum += arm.cross(impulse);
+            if self.spin != Spin::Never {
+                self.momentum += arm.cross(impulse);
+            }
         }
     }
 }

@@ -33,6 +33,7 @@
 //!     pose: Pose::IDENTITY,
 //!     linear_velocity: DVec3::ZERO,
 //!     angular_velocity: DVec3::ZERO,
+//!     drag_area_m2: 0.0,
 //! };
 //! let ball = BodyDef {
 //!     compound: Arc::new(Compound::single(Shape::sphere(0.1)?)),
@@ -50,11 +51,17 @@
 //! ```
 #![cfg_attr(test, allow(clippy::disallowed_methods))]
 
+// So that unit tests can use the fixtures of the crate's tests, which see it from outside.
+#[cfg(test)]
+extern crate self as physics;
+
 pub mod advance;
 mod body;
 mod compound;
+mod effects;
 mod hash;
 mod hull;
+mod oil;
 mod pose;
 pub mod query;
 #[cfg(test)]
@@ -69,8 +76,11 @@ mod world;
 
 pub use body::{Body, BodyDef, MassProperties, Material, Motion};
 pub use compound::{Compound, Part};
+pub use effects::{Counts, Effect, Effects};
+pub use oil::{OilError, OilPattern};
 pub use pose::Pose;
 pub use response::Response;
 pub use shape::{Shape, ShapeError};
+pub use step::plan::{PlannedStage, Stage};
 pub use surface::{PairContact, Surface};
 pub use world::{BodyId, Effort, Impact, Settings, SettingsError, World};

@@ -56,17 +56,13 @@ pub fn compliance(inv_mass: f64, inv_inertia: &DMat3, arm: DVec3) -> DMat3 {
 pub fn impulse(response: Response, pair: Coefficients, n: DVec3, dv: DVec3, k: &DMat3) -> DVec3 {
     let approach = n.dot(dv);
     let (e, mu) = (pair.elasticity, pair.friction);
-    if approach <= 0.0 {
-        return DVec3::ZERO;
-    }
-    // F00: along n, and dv'.n = 0. F10 = 2 F00 is the other root of Eq. (7) along n.
-    let f00 = n * (-approach / n.dot(*k * n));
-    let smooth = f00 * (1.0 + e);
-    if mu == 0.0 {
+    let smooth = smooth_impulse(e, n, dv, k);
+    if mu == 0.0 || approach <= 0.0 {
         return smooth;
     }
     let inverse = k.inverse();
     if response == Response::Coulomb {
+        let f00 = inelastic_impulse(n, dv, k);
         let rub = -(inverse * dv) - f00;
         return smooth + rub * share_in_cone(mu, -smooth.dot(n), n, rub);
     }
@@ -78,6 +74,21 @@ pub fn impulse(response: Response, pair: Coefficients, n: DVec3, dv: DVec3, k: &
     };
     // Eq. (9), gathered by friction rate: (1-mu) [(1-e) F00 + e F10] + mu [(1-e) F01 + e F11].
     smooth * (1.0 - mu) + rough * mu
+}
+
+/// `(1-e) F00 + e F10`, the smooth end of Eq. (9): all that an impact without friction needs.
+///
+/// F10 = 2 F00 is the other root of Eq. (7) along n.
+pub(crate) fn smooth_impulse(e: f64, n: DVec3, dv: DVec3, k: &DMat3) -> DVec3 {
+    if n.dot(dv) <= 0.0 {
+        return DVec3::ZERO;
+    }
+    inelastic_impulse(n, dv, k) * (1.0 + e)
+}
+
+/// F00: along n, and dv'.n = 0.
+fn inelastic_impulse(n: DVec3, dv: DVec3, k: &DMat3) -> DVec3 {
+    n * (-n.dot(dv) / n.dot(*k * n))
 }
 
 /// The largest share of `rub` that, added to the pressing impulse `pressed` [N s], stays in the cone of friction.

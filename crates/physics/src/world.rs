@@ -1,13 +1,18 @@
 //! The world: bodies, what touches what, and the calls that change them from outside.
 
+use std::sync::Arc;
+
 use glam::DVec3;
 use thiserror::Error;
 
 use crate::body::{Body, BodyDef, Motion};
+use crate::effects::{Counts, Effect, Effects};
+use crate::oil::OilPattern;
 use crate::pose::Pose;
 use crate::response::Response;
 use crate::step::near::Broad;
 use crate::step::pairs::Pairs;
+use crate::step::plan::{Plan, PlannedStage};
 use crate::step::scratch::Scratch;
 use crate::surface::{PairContact, PairTable, Surface};
 
@@ -24,8 +29,12 @@ pub struct Settings {
     pub iteration_cap: u32,
     /// Contact time after which a lasting contact has taken the share `friction_rate` of the slip [s].
     pub friction_reference_s: f64,
-    /// Whether bodies at rest are skipped until something touches them.
-    pub sleeping: bool,
+    /// What the steps compute; everything else executes nothing.
+    pub effects: Effects,
+    /// Arm at which a contact's normal force resists rolling [m]; read with `Effect::RollingResistance` alone.
+    pub rolling_resistance_m: f64,
+    /// Density of the air [kg/m3]; read with `Effect::Drag` alone.
+    pub air_density_kgpm3: f64,
     /// Coefficients of pairs that [`World::set_pair`] has not named; `Response::Coulomb` alone reads them.
     pub contact: PairContact,
 }
@@ -38,7 +47,9 @@ impl Default for Settings {
             response: Response::Guarded,
             iteration_cap: 20,
             friction_reference_s: 1.0 / 60.0,
-            sleeping: true,
+            effects: Effects::default(),
+            rolling_resistance_m: 0.0,
+            air_density_kgpm3: 0.0,
             contact: PairContact {
                 restitution: 0.5,
                 friction: 0.2,
@@ -62,6 +73,12 @@ pub enum SettingsError {
     /// The reference interval must be positive and finite.
     #[error("friction_reference_s must be a positive time in seconds, not {0}")]
     FrictionReference(f64),
+    /// The arm of the rolling resistance is finite and not negative.
+    #[error("rolling_resistance_m must be a length of 0 m or more, not {0}")]
+    RollingResistance(f64),
+    /// The density of the air is finite and not negative.
+    #[error("air_density_kgpm3 must be a density of 0 kg/m3 or more, not {0}")]
+    AirDensity(f64),
     /// Restitution lies between 0 and 1, friction is positive or zero.
     #[error("a pair needs a restitution from 0 to 1 and a friction coefficient of 0 or more, not {} and {}", .0.restitution, .0.friction)]
     Pair(PairContact),
@@ -104,12 +121,17 @@ pub struct Effort {
     pub looks: u64,
     /// Answers of single lasting contacts.
     pub passes: u64,
+    /// How often the work of each effect was done on a body or a contact.
+    pub work: Counts,
 }
 
 /// Bodies and their contacts. Cloning it is a snapshot: the clone runs on to the same bits.
 #[derive(Clone, Debug)]
 pub struct World {
     pub(crate) settings: Settings,
+    /// Effects that something in the world calls for.
+    called: Effects,
+    pub(crate) plan: Plan,
     pub(crate) contacts: PairTable,
     pub(crate) bodies: Vec<Body>,
     /// Per slot: how often it was reused, and whether a body lives in it.
@@ -133,7 +155,7 @@ impl World {
     /// An empty world.
     ///
     /// # Errors
-    /// On a step rate, gravity, cap, reference interval or pair that cannot be used.
+    /// On a setting that cannot be used.
     pub fn new(settings: Settings) -> Result<World, SettingsError> {
         let positive = |x: f64| x > 0.0 && x.is_finite();
         if !positive(settings.step_hz) {
@@ -150,11 +172,23 @@ impl World {
                 settings.friction_reference_s,
             ));
         }
+        let amount = |x: f64| x >= 0.0 && x.is_finite();
+        if !amount(settings.rolling_resistance_m) {
+            return Err(SettingsError::RollingResistance(
+                settings.rolling_resistance_m,
+            ));
+        }
+        if !amount(settings.air_density_kgpm3) {
+            return Err(SettingsError::AirDensity(settings.air_density_kgpm3));
+        }
         if !settings.contact.is_valid() {
             return Err(SettingsError::Pair(settings.contact));
         }
+        let called = settings.calls_for();
         Ok(World {
             settings,
+            called,
+            plan: Plan::new(&settings, called),
             contacts: PairTable::new(settings.contact),
             bodies: Vec::new(),
             generations: Vec::new(),
@@ -190,13 +224,36 @@ impl World {
             return Err(SettingsError::Pair(pair));
         }
         self.contacts.set(a, b, pair);
+        if self.settings.response == Response::Coulomb {
+            self.call_for(pair.calls_for());
+        }
         Ok(())
+    }
+
+    /// Oils a body's surface, in place of the pattern that it had; friction listens to it with `Effect::Oil` alone.
+    ///
+    /// # Panics
+    /// If the body was removed.
+    pub fn set_oil(&mut self, id: BodyId, pattern: OilPattern) {
+        let slot = self.slot(id);
+        self.disturb(slot);
+        if !pattern.is_neutral() {
+            self.call_for(Effects::NONE.with(Effect::Oil));
+        }
+        self.bodies[slot].oil = Some(Arc::new(pattern));
+    }
+
+    /// The stages that a step runs, in their order, with the effects that act in each.
+    ///
+    /// An effect is missing if the settings do not list it, and if nothing in the world calls for it.
+    pub fn plan(&self) -> impl Iterator<Item = PlannedStage> + '_ {
+        self.plan.stages()
     }
 
     /// Adds a body. A state or mass that is not finite freezes the body where it is instead of failing later.
     pub fn add(&mut self, def: BodyDef) -> BodyId {
-        let valid = def.motion == Motion::Fixed || def.mass.is_valid();
-        let mut body = Body::new(def);
+        let valid = def.is_valid();
+        let mut body = Body::new(def, &self.settings);
         body.frozen = !valid || !body.is_finite();
         let vacant = if self.vacant > 0 {
             self.generations.iter().position(|(_, live)| !live)
@@ -220,6 +277,8 @@ impl World {
                 self.bodies.len() - 1
             }
         };
+        self.call_for_all_of(slot);
+        self.decide_meeting(slot);
         self.renew(slot);
         BodyId {
             slot: slot as u32,
@@ -237,7 +296,7 @@ impl World {
         self.generations[slot] = (id.generation + 1, false);
         self.vacant += 1;
         let body = &mut self.bodies[slot];
-        body.collides = false;
+        (body.collides, body.meets) = (false, false);
         body.motion = Motion::Fixed;
         body.halt();
         self.renew(slot);
@@ -294,6 +353,9 @@ impl World {
         let (linear, angular) = (body.linear, body.angular_velocity());
         body.motion = motion;
         body.set_velocity(linear, angular);
+        self.call_for_all_of(slot);
+        self.decide_meeting(slot);
+        let body = &mut self.bodies[slot];
         // What it never met while both stood fast.
         body.box_until = f64::NEG_INFINITY;
         self.targets[slot] = None;
@@ -304,6 +366,7 @@ impl World {
         let slot = self.slot(id);
         self.disturb(slot);
         self.bodies[slot].collides = collides;
+        self.decide_meeting(slot);
         self.renew(slot);
     }
 
@@ -355,11 +418,22 @@ impl World {
     }
 
     /// Kinetic and potential energy of all dynamic bodies [J], the height measured along gravity from the origin.
+    ///
+    /// Without `Effect::Gravity` there is no potential energy.
     pub fn energy(&self) -> f64 {
         let dynamic = self.bodies.iter().filter(|b| b.motion == Motion::Dynamic);
         dynamic
-            .map(|b| b.kinetic_energy() - b.mass.mass * self.settings.gravity.dot(b.position))
+            .map(|b| b.kinetic_energy() - b.mass.mass * self.plan.gravity.dot(b.position))
             .sum()
+    }
+
+    /// Takes effects into the plan, where the settings list them.
+    pub(crate) fn call_for(&mut self, effects: Effects) {
+        let called = self.called.or(effects);
+        if called != self.called {
+            self.called = called;
+            self.plan = Plan::new(&self.settings, called);
+        }
     }
 
     pub(crate) fn id(&self, slot: usize) -> BodyId {

@@ -4,7 +4,7 @@ mod support;
 
 use allocation_counter::measure;
 use glam::DVec3;
-use physics::{BodyId, Pose, Settings, World};
+use physics::{BodyId, Effect, Effects, Pose, Settings, World};
 use support::*;
 
 /// Puts rack and ball back to where a shot begins.
@@ -24,7 +24,7 @@ fn no_step_allocates_after_a_warm_up() {
     for (pins, sleeping) in [(composite_pin(), false), (ellipsoid_pin(), true)] {
         let m = material(0.7, 0.7);
         let settings = Settings {
-            sleeping,
+            effects: Effects::default().set(Effect::Sleeping, sleeping),
             ..Settings::default()
         };
         let (mut world, ids) = alley(settings, &pins, m);

@@ -5,7 +5,10 @@ mod support;
 use std::sync::Arc;
 
 use glam::DVec3;
-use physics::{Compound, Material, Motion, PairContact, Pose, Response, Settings, Shape, World};
+use physics::{
+    Compound, Effect, Effects, Material, Motion, PairContact, Pose, Response, Settings, Shape,
+    World,
+};
 use support::*;
 
 fn floor(world: &mut World, m: Material) {
@@ -47,7 +50,7 @@ fn ball_bounces_to_e_squared_heights() {
 #[test]
 fn bouncing_ball_comes_to_rest_when_the_series_says() {
     let mut world = World::new(Settings {
-        sleeping: false,
+        effects: Effects::default().without(Effect::Sleeping),
         ..Settings::default()
     })
     .unwrap();
@@ -126,7 +129,7 @@ fn slip_decays_by_time_and_not_by_step() {
 /// Whether a pin let go at `angle` falls.
 fn falls(pin_shape: &Arc<Compound>, angle: f64, direction: f64, e: f64, mu: f64) -> bool {
     let mut world = World::new(Settings {
-        sleeping: false,
+        effects: Effects::default().without(Effect::Sleeping),
         ..Settings::default()
     })
     .expect("these settings are fine");

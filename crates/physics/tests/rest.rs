@@ -3,7 +3,7 @@
 mod support;
 
 use glam::{DQuat, DVec3};
-use physics::{PairContact, Pose, Response, Settings, World};
+use physics::{Effect, Effects, PairContact, Pose, Response, Settings, World};
 use support::*;
 
 #[test]
@@ -12,7 +12,7 @@ fn a_rack_stands_awake_for_a_minute() {
         for (e, mu) in [(0.7, 0.7), (1.0, 0.0), (0.7, 0.0), (1.0, 1.0), (0.0, 0.7)] {
             for response in [Response::UnoSlater, Response::Guarded, Response::Coulomb] {
                 let settings = Settings {
-                    sleeping: false,
+                    effects: Effects::default().without(Effect::Sleeping),
                     response,
                     contact: PairContact {
                         restitution: e,

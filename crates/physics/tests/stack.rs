@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
 use physics::{
-    BodyDef, BodyId, Compound, MassProperties, Motion, PairContact, Pose, Response, Settings,
-    Shape, World,
+    BodyDef, BodyId, Compound, Effect, Effects, MassProperties, Motion, PairContact, Pose,
+    Response, Settings, Shape, World,
 };
 use support::*;
 
@@ -17,7 +17,7 @@ fn world(friction: f64) -> World {
     let settings = Settings {
         step_hz: 120.0,
         response: Response::Coulomb,
-        sleeping: false,
+        effects: Effects::default().without(Effect::Sleeping),
         contact: PairContact {
             restitution: 0.0,
             friction,
@@ -46,6 +46,7 @@ fn body(shape: Shape, mass: f64, inertia: DVec3, pose: Pose) -> BodyDef {
         pose,
         linear_velocity: DVec3::ZERO,
         angular_velocity: DVec3::ZERO,
+        drag_area_m2: 0.0,
     }
 }
 
@@ -133,7 +134,7 @@ fn a_box_slides_where_the_slope_is_steeper_than_its_friction() {
         let settings = Settings {
             step_hz: 120.0,
             gravity: DVec3::new(G * angle.sin(), -G * angle.cos(), 0.0),
-            sleeping: false,
+            effects: Effects::default().without(Effect::Sleeping),
             ..*world(mu).settings()
         };
         let mut world = World::new(settings).expect("settings are valid");

@@ -5,7 +5,7 @@ mod support;
 use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
-use physics::{Compound, Motion, Pose, Settings, SettingsError, Shape, World};
+use physics::{Compound, Effect, Effects, Motion, Pose, Settings, SettingsError, Shape, World};
 use support::*;
 
 #[test]
@@ -129,7 +129,7 @@ fn a_pin_whose_centre_overhangs_the_edge_tips_off_and_one_inside_stands() {
     let m = material(0.7, 0.7);
     for (over, falls) in [(0.004, true), (-0.004, false)] {
         let mut world = World::new(Settings {
-            sleeping: false,
+            effects: Effects::default().without(Effect::Sleeping),
             ..Settings::default()
         })
         .unwrap();

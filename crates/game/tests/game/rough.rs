@@ -103,6 +103,7 @@ impl Rough {
             impulses: spent(now.impulses, self.last.impulses),
             looks: spent(now.looks, self.last.looks),
             passes: spent(now.passes, self.last.passes),
+            ..Effort::default()
         };
         self.last = now;
         let blows = BLOWS * MOVABLE * u64::from(STEPS);

@@ -64,4 +64,14 @@ pub struct BodyDef {
     pub linear_velocity: DVec3,
     /// Angular velocity [rad/s], world frame.
     pub angular_velocity: DVec3,
+    /// Drag coefficient times cross-section, C_d A [m2]; 0 for a body that air does not slow.
+    pub drag_area_m2: f64,
+}
+
+impl BodyDef {
+    /// Whether a body can move so: something that never moves may have any mass.
+    pub(crate) fn is_valid(&self) -> bool {
+        let drags = self.drag_area_m2 >= 0.0 && self.drag_area_m2.is_finite();
+        self.motion == Motion::Fixed || (self.mass.is_valid() && drags)
+    }
 }

@@ -2,9 +2,38 @@
 
 use glam::{DQuat, DVec3};
 
-use super::{Body, Motion};
+use super::{Body, MassProperties, Motion};
 use crate::compound::Symmetry;
+use crate::effects::{Effect, Effects};
 use crate::pose::Pose;
+
+/// How a dynamic body turns while nothing exerts a torque on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Spin {
+    /// Not at all, whatever torques act.
+    Never,
+    /// About a fixed axis at a fixed rate: its three moments of inertia are equal.
+    Even,
+    /// So that the angular momentum stays: precession, tumbling.
+    Free,
+    /// So that the angular velocity stays, though the moments of inertia differ.
+    Steady,
+}
+
+impl Spin {
+    pub fn new(mass: &MassProperties, effects: Effects) -> Spin {
+        let i = mass.inertia;
+        if !effects.contains(Effect::Rotation) {
+            Spin::Never
+        } else if i.x == i.y && i.y == i.z {
+            Spin::Even
+        } else if effects.contains(Effect::Gyroscopic) {
+            Spin::Free
+        } else {
+            Spin::Steady
+        }
+    }
+}
 
 /// Bounds of how the surface moves, whatever the shape: what certificates are made of.
 #[derive(Clone, Copy, Debug)]
@@ -67,6 +96,7 @@ impl Body {
             Motion::Fixed => Sweep::STILL,
             _ if symmetry == Symmetry::Full => Sweep::STILL,
             Motion::Driven => Sweep::new(0.0, self.turning.length(), radius),
+            Motion::Dynamic if self.spin == Spin::Steady => self.sweep_of_steady_turning(),
             Motion::Dynamic if symmetry == Symmetry::Axis && i.x == i.z => {
                 let axis = self.rotation * DVec3::Y;
                 let along = axis.dot(self.momentum);
@@ -82,6 +112,17 @@ impl Body {
                 sweep
             }
         }
+    }
+
+    fn sweep_of_steady_turning(&self) -> Sweep {
+        let rate = self.angular_velocity();
+        let axis = match self.compound.symmetry() {
+            Symmetry::Axis => self.rotation * DVec3::Y,
+            _ => DVec3::ZERO,
+        };
+        let along = axis.dot(rate);
+        let across = (rate - axis * along).length();
+        Sweep::new(along, across, self.compound.bounding_radius())
     }
 
     /// Recomputes reach and end pose for the rest of a step of `dt`, after a change of velocity.
@@ -110,7 +151,15 @@ impl Body {
         let rotation = match self.motion {
             Motion::Driven => turn(self.turning * dt) * self.rotation,
             _ if self.momentum == DVec3::ZERO => self.rotation,
-            _ => self.tumbled(dt),
+            _ => match self.spin {
+                Spin::Never => self.rotation,
+                Spin::Even => turn(self.momentum * (dt / self.mass.inertia.x)) * self.rotation,
+                Spin::Free => self.tumbled(dt),
+                Spin::Steady => {
+                    let local = self.rotation.conjugate() * self.momentum;
+                    turn(self.rotation * (local / self.mass.inertia) * dt) * self.rotation
+                }
+            },
         };
         Pose::new(position, rotation.normalize())
     }
@@ -139,6 +188,24 @@ impl Body {
         rotation
     }
 
+    /// Takes a new orientation; what belongs to the motion in between goes with it.
+    fn turn_to(&mut self, rotation: DQuat) {
+        let before = std::mem::replace(&mut self.rotation, rotation);
+        if self.spin != Spin::Steady || self.momentum == DVec3::ZERO {
+            return;
+        }
+        // The angular velocity stays, so the momentum goes round with the body.
+        let i = self.mass.inertia;
+        let carry = |momentum: DVec3| {
+            let turning = before * (before.conjugate() * momentum / i);
+            rotation * (rotation.conjugate() * turning * i)
+        };
+        self.momentum = carry(self.momentum);
+        for (_, torque) in &mut self.bend {
+            *torque = carry(*torque);
+        }
+    }
+
     /// Brings the state to time `t` [s] of the step.
     pub(crate) fn advance(&mut self, t: f64, dt: f64) {
         if t <= self.clock {
@@ -150,7 +217,7 @@ impl Body {
             self.path += elapsed * (speed + 0.5 * self.acceleration.length() * elapsed);
             let pose = if t == dt { self.end } else { self.pose_at(t) };
             self.position = pose.position;
-            self.rotation = pose.rotation;
+            self.turn_to(pose.rotation);
             self.linear += self.acceleration * (t - self.clock);
         }
         self.clock = t;

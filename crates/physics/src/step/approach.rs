@@ -11,6 +11,7 @@ use super::{CONTACT, SINK};
 use crate::advance::{Grade, Held, hold};
 use crate::body::Body;
 use crate::compound::Part;
+use crate::effects::Effect;
 use crate::query::{Placed, distance_to_point, gap_along};
 use crate::world::World;
 
@@ -133,6 +134,9 @@ impl<'a> Approach<'a> {
             if self.gap <= CONTACT && !self.touching && self.closing(point) {
                 return self.found(Some(self.time), 1);
             }
+        }
+        if !self.world.plan.has(Effect::Continuous) {
+            return self.found(None, 1);
         }
         for looks in 1..=SEARCHES {
             match self.bound() {

@@ -10,7 +10,8 @@ use super::scratch::Answer;
 use super::search::Event;
 use super::touch::Touch;
 use crate::body::Body;
-use crate::response::{Coefficients, Response, impulse};
+use crate::effects::Effect;
+use crate::response::{Coefficients, impulse, smooth_impulse};
 use crate::world::{Impact, World};
 
 /// Most impulses in answer to one event.
@@ -208,18 +209,10 @@ impl World {
     fn strike(&mut self, touch: &Touch, elastic: bool) {
         let slip = touch.slip(&self.bodies);
         let approach = touch.normal.dot(slip);
-        let mut pair = self.coefficients(touch.a, touch.b);
         let worn = |slot: usize| self.bodies[slot].blows >= ELASTIC_BLOWS;
-        if approach < self.resting_speed() || !elastic || worn(touch.a) || worn(touch.b) {
-            // A slow touch is the beginning of a lasting contact, and that has a friction of its own.
-            pair = Coefficients {
-                elasticity: 0.0,
-                friction: 0.0,
-            };
-        }
-        let response: Response = self.settings.response;
-        let k = touch.compliance(&self.bodies);
-        let impulse = impulse(response, pair, touch.normal, slip, &k);
+        // A slow touch is the beginning of a lasting contact, and that has a friction of its own.
+        let is_soft = approach < self.resting_speed() || !elastic || worn(touch.a) || worn(touch.b);
+        let impulse = self.impact_impulse(touch, slip, is_soft);
         touch.push(&mut self.bodies, impulse);
         for slot in [touch.a, touch.b] {
             self.bodies[slot].blows += 1;
@@ -232,6 +225,29 @@ impl World {
             approach_speed: approach,
             impulse,
         });
+    }
+
+    /// Impulse of an impact on a [N s]: what the plan has of the law; a `soft` one is neither elastic nor rough.
+    fn impact_impulse(&mut self, touch: &Touch, slip: DVec3, is_soft: bool) -> DVec3 {
+        let (n, k) = (touch.normal, touch.compliance(&self.bodies));
+        let elasticity = if is_soft {
+            0.0
+        } else {
+            self.elasticity_of(touch)
+        };
+        if elasticity > 0.0 {
+            self.effort.work.add(Effect::Elasticity, 1);
+        }
+        if is_soft || !self.plan.has(Effect::Friction) {
+            return smooth_impulse(elasticity, n, slip, &k);
+        }
+        let friction = self.friction_of(touch);
+        self.effort.work.add(Effect::Friction, 1);
+        let pair = Coefficients {
+            elasticity,
+            friction,
+        };
+        impulse(self.settings.response, pair, n, slip, &k)
     }
 
     /// Stops the bodies of a contact that have taken too many blows, for the rest of the step.
@@ -292,7 +308,7 @@ impl World {
 
     /// Chooses flight or support of bodies for the rest of the step.
     fn set_off(&mut self, joined: &[usize], touches: &[Touch], t: f64, dt: f64) {
-        let gravity = self.settings.gravity;
+        let (gravity, falls) = (self.plan.gravity, self.plan.has(Effect::Gravity));
         let mut carried = std::mem::take(&mut self.scratch.carried);
         for slot in joined {
             let is_carried = !self.pairs.contacts(*slot).is_empty();
@@ -302,6 +318,9 @@ impl World {
             }
             body.straighten();
             body.acceleration = if is_carried { DVec3::ZERO } else { gravity };
+            if falls && !is_carried {
+                self.effort.work.add(Effect::Gravity, 1);
+            }
             if is_carried {
                 carried.push(*slot);
             }

@@ -2,16 +2,21 @@
 
 pub(crate) mod near;
 pub(crate) mod pairs;
+pub(crate) mod plan;
 pub(crate) mod scratch;
 
 mod approach;
 mod base;
+mod called;
+mod coefficient;
+mod drag;
 mod events;
 mod grip;
 mod islands;
 mod patch;
 mod queue;
 mod rest;
+mod roll;
 mod row;
 mod search;
 mod sleep;
@@ -25,6 +30,9 @@ pub(crate) use touch::place;
 use glam::DVec3;
 
 use self::pairs::{Contact, Key};
+use self::plan::{Plan, Stage};
+use crate::body::Spin;
+use crate::effects::Effect;
 use crate::world::World;
 
 /// Distance at which two bodies count as in contact [m].
@@ -48,38 +56,52 @@ impl World {
         if self.is_quiet() {
             return;
         }
-        let mut left = self.dt();
-        self.aim_driven(left);
+        let whole = self.dt();
+        self.run_stages(|plan| &plan.before, whole);
+        let mut left = whole;
         while left > 0.0 {
-            let dt = self.tick(left);
+            self.effort.ticks += 1;
             // The last tick is all that is left, so that this ends at zero.
-            left -= dt;
+            left -= self.run_stages(|plan| &plan.tick, left);
         }
+        self.run_stages(|plan| &plan.after, whole);
         self.dismiss();
     }
 
-    /// Advances by one tick of at most `left` seconds; returns its length.
-    fn tick(&mut self, left: f64) -> f64 {
-        self.effort.ticks += 1;
+    /// Runs some stages of the plan over at most `dt` seconds; returns the length that they chose.
+    fn run_stages(&mut self, of: fn(&Plan) -> &[Stage], mut dt: f64) -> f64 {
+        for i in 0..of(&self.plan).len() {
+            match of(&self.plan)[i] {
+                Stage::Drive => self.aim_driven(dt),
+                Stage::Slow | Stage::SlowAgain => self.slow_in_air(dt),
+                Stage::WakeHeld => self.wake_driven_neighbours(),
+                Stage::Gather => dt = self.gather_tick(dt),
+                Stage::Carry => self.rest(dt),
+                Stage::Strike => self.run_events(dt),
+                Stage::Arrive => self.arrive(dt),
+                Stage::Sleep => self.fall_asleep(dt),
+            }
+        }
+        dt
+    }
+
+    /// Notes the lasting contacts of a tick of at most `left` seconds; returns its length.
+    fn gather_tick(&mut self, left: f64) -> f64 {
+        self.awake.sort_unstable();
         for slot in &self.awake {
             self.bodies[*slot as usize].acceleration = DVec3::ZERO;
         }
-        self.wake_driven_neighbours();
-        self.awake.sort_unstable();
-        let mut lasting = std::mem::take(&mut self.scratch.aged);
+        let mut lasting = std::mem::take(&mut self.scratch.lasting);
         self.gather(&mut lasting);
         let dt = self.tick_length(&lasting, left);
-        self.rest(&lasting, dt);
-        lasting.clear();
-        self.scratch.aged = lasting;
-        self.run_events(dt);
+        self.scratch.lasting = lasting;
+        dt
+    }
+
+    fn arrive(&mut self, dt: f64) {
         for i in 0..self.awake.len() {
             self.end_tick(self.awake[i] as usize, dt);
         }
-        if self.settings.sleeping {
-            self.fall_asleep(dt);
-        }
-        dt
     }
 
     /// Length of the next tick [s]: `left` in equal parts, as many as the most demanding contact asks for.
@@ -149,13 +171,19 @@ impl World {
     /// A constant of the scene and not of the step, so that a bouncing ball rests after the same bounce whatever the
     /// step. Weightless scenes keep restitution down to 0.1 mm/s.
     pub(crate) fn resting_speed(&self) -> f64 {
-        (self.settings.gravity.length() / 360.0).max(1e-4)
+        (self.plan.gravity.length() / 360.0).max(1e-4)
     }
 
     /// Brings a body to the end of the tick; one whose state is no state any more stops where it last was.
     pub(super) fn end_tick(&mut self, slot: usize, dt: f64) {
         let body = &mut self.bodies[slot];
         body.advance(dt, dt);
+        if body.momentum != DVec3::ZERO {
+            self.effort.work.add(Effect::Rotation, 1);
+            if body.spin == Spin::Free {
+                self.effort.work.add(Effect::Gyroscopic, 1);
+            }
+        }
         body.straighten();
         body.fresh = false;
         body.clock = 0.0;

@@ -105,11 +105,11 @@ impl World {
     /// Gives a body that may leave its box in this step a new one, and finds its neighbours.
     pub(crate) fn stay_in_box(&mut self, slot: usize) {
         let body = &mut self.bodies[slot];
-        if body.path + body.reach <= body.box_until && body.collides {
+        if body.path + body.reach <= body.box_until && body.meets {
             return;
         }
         let number = slot as u32;
-        if !body.collides {
+        if !body.meets {
             self.broad.remove(number);
             self.pairs.forget(slot);
             return;
@@ -189,7 +189,7 @@ impl Broad {
 /// Whether two bodies can ever be a pair: both collide, and something moves one of them.
 fn may_meet(a: &Body, b: &Body) -> bool {
     let moved = a.motion == Motion::Dynamic || b.motion == Motion::Dynamic;
-    a.collides && b.collides && moved
+    a.meets && b.meets && moved
 }
 
 /// The box that holds a body while its surface moves by no more than `margin` [m].

@@ -16,9 +16,10 @@ use super::grip::Friction;
 use super::pairs::{Contact, Key, Load};
 use super::row::{Mover, Row};
 use super::scratch::Carry;
-use super::solve::group;
+use super::solve::{Halves, Work, group};
 use super::touch::Touch;
 use crate::body::Motion;
+use crate::effects::Effect;
 use crate::response::{Response, friction_rate_per_step};
 use crate::world::World;
 
@@ -31,9 +32,11 @@ const EXACT: f64 = 1e-9;
 
 impl World {
     /// Answers the lasting contacts, and sets everybody off for the tick.
-    pub(crate) fn rest(&mut self, lasting: &[Contact], dt: f64) {
+    pub(crate) fn rest(&mut self, dt: f64) {
         let mut carried = std::mem::take(&mut self.scratch.found);
-        let gravity = self.settings.gravity;
+        let mut lasting = std::mem::take(&mut self.scratch.lasting);
+        let (gravity, falls) = (self.plan.gravity, self.plan.has(Effect::Gravity));
+        let mut falling = 0;
         for slot in &self.awake {
             let body = &mut self.bodies[*slot as usize];
             if body.rests {
@@ -41,11 +44,15 @@ impl World {
             }
             if body.is_active() && body.contacts > 0 {
                 carried.push(*slot);
-            } else if body.is_active() {
+            } else if falls && body.is_active() {
                 body.acceleration = gravity;
+                falling += 1;
             }
         }
-        self.carry_islands(lasting, &carried, dt);
+        self.effort.work.add(Effect::Gravity, falling);
+        self.carry_islands(&lasting, &carried, dt);
+        lasting.clear();
+        self.scratch.lasting = lasting;
         for slot in &self.awake {
             self.bodies[*slot as usize].look_ahead(dt);
         }
@@ -58,8 +65,14 @@ impl World {
     /// Other bodies of the `touches`, those that still sleep, only take impulses.
     pub(crate) fn carry(&mut self, touches: &[Touch], carried: &[usize], span: f64) {
         let half = 0.5 * span;
-        let kick = self.settings.gravity * half;
-        let enough = 1e-4 * kick.length() + 1e-15;
+        let kick = self.plan.gravity * half;
+        let halves = Halves {
+            kick: self.plan.has(Effect::Gravity).then_some(kick),
+            is_cone: self.settings.response == Response::Coulomb,
+            is_rough: self.plan.has(Effect::Friction),
+            rolling: self.plan.rolling,
+            enough: 1e-4 * kick.length() + 1e-15,
+        };
         let mut room = std::mem::take(&mut self.scratch.carry);
         room.number(self.bodies.len(), carried, touches);
         let movers = room.slots.iter().map(|s| Mover::new(&self.bodies[*s]));
@@ -67,11 +80,11 @@ impl World {
         self.rows(touches, &mut room, span);
         group(&mut room);
         room.before.extend(&room.movers);
-        let passes = room.answer(&self.bodies, carried.len(), kick, enough);
+        let first = room.answer(&self.bodies, carried.len(), &halves);
         room.middle.extend(&room.movers);
         room.rows.iter_mut().for_each(Row::renew);
-        let passes = passes + room.answer(&self.bodies, carried.len(), kick, enough);
-        self.effort.passes += u64::from(passes);
+        let second = room.answer(&self.bodies, carried.len(), &halves);
+        self.note_work(&room, carried.len(), [first, second]);
         self.keep_loads(&room.rows, half);
         for (i, slot) in room.slots.iter().enumerate() {
             let body = &mut self.bodies[*slot];
@@ -99,6 +112,25 @@ impl World {
         }
         room.clear();
         self.scratch.carry = room;
+    }
+
+    /// Counts what a stretch took.
+    fn note_work(&mut self, room: &Carry, carried: usize, halves: [Work; 2]) {
+        let rough = room
+            .rows
+            .iter()
+            .filter(|row| row.friction != Friction::None);
+        let work = &mut self.effort.work;
+        if self.plan.has(Effect::Friction) {
+            work.add(Effect::Friction, 2 * rough.count());
+        }
+        if self.plan.has(Effect::Gravity) {
+            work.add(Effect::Gravity, 2 * carried);
+        }
+        for half in halves {
+            self.effort.passes += u64::from(half.passes);
+            work.add(Effect::RollingResistance, half.braked);
+        }
     }
 
     /// Lasting contacts of awake bodies that have to be answered, by age; counts them per body.
@@ -152,8 +184,7 @@ impl World {
             && (body.linear, body.momentum) == (DVec3::ZERO, DVec3::ZERO)
             && !ground.is_dynamic()
             && (ground.linear, ground.turning) == (DVec3::ZERO, DVec3::ZERO);
-        let gravity = self.settings.gravity;
-        let Some(down) = gravity.try_normalize() else {
+        let Some(down) = self.plan.gravity.try_normalize() else {
             return false;
         };
         let upright = base.up.dot(down) < -1.0 + 1e-14;
@@ -168,7 +199,7 @@ impl World {
     fn rows(&mut self, touches: &[Touch], room: &mut Carry, span: f64) {
         let mut known: Option<(f64, Friction)> = None;
         for touch in touches {
-            let coefficient = self.coefficients(touch.a, touch.b).friction;
+            let coefficient = self.friction_of(touch);
             let points = touch.patch.map_or(1, |patch| patch.spots().len());
             // Most contacts of a scene share their friction rate: the power is taken once for all in a row.
             let friction = match known {
@@ -232,7 +263,9 @@ impl World {
             };
         }
         // What a driven body holds down is pushed out faster: nobody minds, and its hand is inside. It takes work.
-        let hasty = touch.gap < -1e-3 && (self.is_held(touch.a) || self.is_held(touch.b));
+        let hasty = touch.gap < -1e-3
+            && self.plan.has(Effect::Hand)
+            && (self.is_held(touch.a) || self.is_held(touch.b));
         let fastest = if hasty {
             0.3
         } else {

@@ -11,6 +11,10 @@ use super::touch::Touch;
 use crate::body::Body;
 use crate::response::{compliance, rate_without_pull};
 
+/// Approach that a contact has to stop for friction to act there [m/s]: of several contacts that share a load in no
+/// definite way one may carry all, and another a rounding error.
+const NOTHING: f64 = 1e-12;
+
 /// Most passes over normal and friction of a base on its edge.
 const EDGE_PASSES: u32 = 8;
 
@@ -42,6 +46,11 @@ impl Mover {
             self.linear += impulse * self.inv_mass;
             self.angular += self.inv_inertia * arm.cross(impulse);
         }
+    }
+
+    /// Change of the angular velocity [rad/s] that an angular impulse makes [N m s].
+    pub fn turn_by(&self, angular_impulse: DVec3) -> DVec3 {
+        self.inv_inertia * angular_impulse
     }
 
     pub fn is_moved(&self) -> bool {
@@ -129,7 +138,9 @@ impl Row {
     /// Takes a load for `span` [s] for granted until the passes know better.
     pub fn expect(&mut self, load: Load, span: f64) {
         self.pressed = load.pressed * span;
-        self.rubbed = load.rubbed * span;
+        if let Friction::Cone(mu) = self.friction {
+            self.rubbed = (load.rubbed * span).clamp_length_max(mu * self.pressed);
+        }
     }
 
     /// What it carries over `span` [s].
@@ -150,6 +161,28 @@ impl Row {
         let impulse = self.rubbed - self.touch.normal * self.pressed;
         all[self.movers.0].push(self.touch.arm_a, impulse);
         all[self.movers.1].push(self.touch.arm_b, -impulse);
+    }
+
+    /// Normal impulse so far [N s].
+    pub fn pressed(&self) -> f64 {
+        self.pressed
+    }
+
+    /// Takes back all that it gave along the normal, or as a base.
+    pub fn take_back(&mut self, all: &mut [Mover]) {
+        let (a, b) = self.movers;
+        let on_ground = !(all[a].is_moved() && all[b].is_moved());
+        if let Some(base) = self.touch.base.filter(|_| on_ground) {
+            let own = if base.of_a { a } else { b };
+            all[own].linear -= self.given.0;
+            all[own].angular -= self.given.1;
+            self.given = (DVec3::ZERO, DVec3::ZERO);
+        } else {
+            let impulse = self.touch.normal * self.pressed;
+            all[self.movers.0].push(self.touch.arm_a, impulse);
+            all[self.movers.1].push(self.touch.arm_b, -impulse);
+        }
+        self.pressed = 0.0;
     }
 
     fn prepare(&mut self, all: &[Mover]) {
@@ -189,12 +222,14 @@ impl Row {
         let (arm_a, arm_b) = (self.touch.arm_a, self.touch.arm_b);
         let slip_of =
             |all: &[Mover]| all[self.movers.0].velocity(arm_a) - all[self.movers.1].velocity(arm_b);
-        if n.dot(slip_of(all)) <= self.allowed && self.pressed == 0.0 {
+        if n.dot(slip_of(all)) - self.allowed + self.pressed * self.stiffness <= NOTHING {
+            self.press(all);
             return;
         }
         self.twist(all);
         let slip = slip_of(all);
-        let approach = n.dot(slip) - self.allowed;
+        // No more is taken back than was pressed.
+        let approach = (n.dot(slip) - self.allowed).max(-self.pressed * self.stiffness);
         if approach <= 0.0 && self.pressed == 0.0 {
             return;
         }

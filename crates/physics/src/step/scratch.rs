@@ -24,6 +24,8 @@ pub(crate) struct Scratch {
     pub carried: Vec<usize>,
     pub carry: Carry,
     pub islands: Islands,
+    /// Lasting contacts of the tick.
+    pub lasting: Vec<Contact>,
     /// Contacts with their age, or bodies to go on with.
     pub aged: Vec<Contact>,
     pub restless: Vec<u32>,

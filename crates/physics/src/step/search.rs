@@ -7,6 +7,7 @@ use super::pairs::Key;
 use super::touch::{Frame, place};
 use crate::body::Body;
 use crate::compound::Part;
+use crate::effects::Effect;
 use crate::pose::Pose;
 use crate::query::distance_to_point;
 use crate::world::World;
@@ -71,6 +72,9 @@ impl World {
             };
             let found = Approach::search(self, key, (t0, dt), &starts, &ends);
             self.effort.looks += u64::from(found.looks);
+            if self.plan.has(Effect::Continuous) {
+                self.effort.work.add(Effect::Continuous, 1);
+            }
             let entry = self.pairs.part_mut(key);
             entry.normal = found.normal;
             let gap = if entry.touching { 0.0 } else { found.gap };
@@ -117,10 +121,7 @@ impl World {
 
 /// Whether the pair is looked at: one moves, and one can be moved.
 fn may_collide(a: &Body, b: &Body) -> bool {
-    a.collides
-        && b.collides
-        && (a.is_dynamic() || b.is_dynamic())
-        && !(a.is_still() && b.is_still())
+    a.meets && b.meets && (a.is_dynamic() || b.is_dynamic()) && !(a.is_still() && b.is_still())
 }
 
 /// Lower bound of the gap between two bodies: one's bounding ball against the other's parts.

@@ -2,6 +2,7 @@
 
 use super::pairs::{Contact, Key};
 use crate::body::Motion;
+use crate::effects::Effect;
 use crate::world::World;
 
 /// Time at rest before sleep [s].
@@ -33,6 +34,7 @@ impl World {
             let body = &self.bodies[*slot as usize];
             if body.motion == Motion::Driven && body.is_busy() {
                 aged.extend(self.pairs.contacts(*slot as usize));
+                self.effort.work.add(Effect::Hand, 1);
             }
         }
         aged.sort_unstable_by_key(|contact| contact.formed);
@@ -50,12 +52,13 @@ impl World {
 
     /// Puts groups of touching bodies to sleep when all of them have been quiet for a while.
     pub(crate) fn fall_asleep(&mut self, dt: f64) {
-        let mut restless = std::mem::take(&mut self.scratch.restless);
+        let (mut restless, mut looked_at) = (std::mem::take(&mut self.scratch.restless), 0);
         for slot in &self.awake {
             let body = &mut self.bodies[*slot as usize];
             if !body.is_active() {
                 continue;
             }
+            looked_at += 1;
             let turning = body.angular_velocity().length() * body.compound.bounding_radius();
             let quiet = body.contacts > 0 && body.linear.length() + turning < QUIET_SPEED;
             body.still_for = if quiet { body.still_for + dt } else { 0.0 };
@@ -64,6 +67,7 @@ impl World {
                 restless.push(*slot);
             }
         }
+        self.effort.work.add(Effect::Sleeping, looked_at);
         // A body sleeps only with all that it touches.
         while let Some(slot) = restless.pop() {
             for i in 0..self.pairs.contacts(slot as usize).len() {

@@ -9,7 +9,7 @@ use crate::body::Body;
 use crate::compound::Part;
 use crate::pose::Pose;
 use crate::query::{self, Limits, Placed, Separation};
-use crate::response::{Coefficients, Response, compliance};
+use crate::response::compliance;
 use crate::world::World;
 
 /// Overlap in which the way out is looked for again, and not along the face that showed it last [m].
@@ -104,22 +104,6 @@ impl Touch {
 }
 
 impl World {
-    /// A pair's coefficients: products of the objects' (§2.2), or Coulomb's from his table.
-    pub(crate) fn coefficients(&self, a: usize, b: usize) -> Coefficients {
-        let (a, b) = (&self.bodies[a].material, &self.bodies[b].material);
-        if self.settings.response == Response::Coulomb {
-            let pair = self.contacts.get(a.surface, b.surface);
-            return Coefficients {
-                elasticity: pair.restitution,
-                friction: pair.friction,
-            };
-        }
-        Coefficients {
-            elasticity: a.elasticity * b.elasticity,
-            friction: a.friction_rate * b.friction_rate,
-        }
-    }
-
     pub(crate) fn limits(&self) -> Limits {
         Limits {
             iteration_cap: self.settings.iteration_cap,

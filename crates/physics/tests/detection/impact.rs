@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
-use physics::{BodyDef, Compound, MassProperties, Material, Motion, Pose, Settings, World};
+use physics::{
+    BodyDef, Compound, Effect, Effects, MassProperties, Material, Motion, Pose, Settings, World,
+};
 
 use crate::Wrong;
 use crate::judge::cases::{self, Case, Class, between, direction, random_shape, rotation};
@@ -43,6 +45,7 @@ impl Flight {
             pose: self.pose,
             linear_velocity: self.velocity,
             angular_velocity: self.spin,
+            drag_area_m2: 0.0,
         }
     }
 }
@@ -98,7 +101,7 @@ fn fast_bodies_meet_within_a_micrometre_of_where_they_should() {
 
         let mut world = World::new(Settings {
             gravity: DVec3::ZERO,
-            sleeping: false,
+            effects: Effects::default().without(Effect::Sleeping),
             ..Settings::default()
         })
         .expect("the settings are valid");

@@ -82,6 +82,7 @@ fn def(
         pose: Pose::from_position(at),
         linear_velocity: DVec3::ZERO,
         angular_velocity: DVec3::ZERO,
+        drag_area_m2: 0.0,
     }
 }
 

@@ -66,6 +66,7 @@ impl Random {
             pose,
             linear_velocity: DVec3::ZERO,
             angular_velocity: DVec3::ZERO,
+            drag_area_m2: 0.0,
         }
     }
 }
