@@ -58,6 +58,13 @@ impl Distribution {
         self.deviation() / (self.throws() as f64).sqrt()
     }
 
+    /// The mean's 95 % interval, within what is possible.
+    pub fn mean_interval(&self) -> [f64; 2] {
+        let (mean, half) = (self.mean(), NORMAL_95 * self.error());
+        let all = (self.counts.len() - 1) as f64;
+        [(mean - half).max(0.0), (mean + half).min(all)]
+    }
+
     /// Throws that felled every pin.
     pub fn strikes(&self) -> u64 {
         self.counts[self.counts.len() - 1]

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::StrikeMap;
-use crate::shot::distribution::{Distribution, NORMAL_95};
+use crate::shot::distribution::Distribution;
 
 /// A cell [px].
 const CELL: [f64; 2] = [46.0, 30.0];
@@ -82,8 +82,8 @@ fn strikes(cell: &Distribution) -> (f64, String, String) {
 }
 
 fn pins(cell: &Distribution) -> (f64, String, String) {
-    let (mean, half) = (cell.mean(), NORMAL_95 * cell.error());
-    let interval = format!("{:.2} - {:.2}", mean - half, mean + half);
+    let (mean, [few, many]) = (cell.mean(), cell.mean_interval());
+    let interval = format!("{few:.2} - {many:.2}");
     // Nearly all maps lie above five pins.
     (
         ((mean - 5.0) / 5.0).clamp(0.0, 1.0),

@@ -3,7 +3,6 @@
 use std::fmt::Write;
 
 use super::StrikeMap;
-use crate::shot::distribution::NORMAL_95;
 
 /// Names of the columns; low and high are the ends of 95 % intervals.
 const HEAD: &str = "model,entry_offset_m,entry_angle_deg,throws,strikes,strike_share,strike_share_low,strike_share_high,\
@@ -14,15 +13,13 @@ pub fn csv(map: &StrikeMap) -> String {
     let mut text = format!("{HEAD}\n");
     for (offset, angle, cell) in map.entries() {
         let (share, [low, high]) = cell.strike_share();
-        let (mean, half) = (cell.mean(), NORMAL_95 * cell.error());
+        let (mean, [few, many]) = (cell.mean(), cell.mean_interval());
         writeln!(
             text,
-            "{},{offset:.6},{angle:.6},{},{},{share:.6},{low:.6},{high:.6},{mean:.4},{:.4},{:.4},{:.4}",
+            "{},{offset:.6},{angle:.6},{},{},{share:.6},{low:.6},{high:.6},{mean:.4},{few:.4},{many:.4},{:.4}",
             map.model,
             cell.throws(),
             cell.strikes(),
-            mean - half,
-            mean + half,
             cell.deviation()
         )
         .expect("a string takes all text");
