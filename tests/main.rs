@@ -4,6 +4,8 @@
 mod assets;
 /// What is refused, and with which sentence.
 mod bad_input;
+/// What a scene calls for, and what it costs.
+mod effects;
 /// Pictures of hand-set states, both eyes, against references.
 mod golden;
 /// What is hard for a rigid-body engine, against what analysis says.

@@ -118,6 +118,12 @@ pub enum Command {
     /// strike-map.svg. The same arguments give the same map. docs/strike-map.md compares maps with
     /// what is published.
     StrikeMap(StrikeMapArguments),
+    /// Show what a scene calls for, and what each effect costs.
+    ///
+    /// Prints the stages that a step of the scene runs with the effects that act in each, and for
+    /// every effect how often it acts in a step, its share of the step's time, and the time with and
+    /// without it.
+    Effects(EffectsArguments),
 }
 
 /// Who or what bowls.
@@ -252,6 +258,22 @@ pub struct HardCasesArguments {
     /// Print a JSON array instead of a table, one object a case.
     #[arg(long)]
     pub json: bool,
+}
+
+/// Arguments of `bowling effects`.
+#[derive(Debug, Args)]
+pub struct EffectsArguments {
+    /// Throws to measure with: more of them give steadier times.
+    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 4, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    pub throws: u64,
+
+    /// Scene: a file of config/scenes, without its ending.
+    #[arg(long, value_name = "NAME", default_value = "alley")]
+    pub scene: String,
+
+    /// Change one setting, as in `bowling play`; may be given several times.
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub settings: Vec<String>,
 }
 
 /// Arguments of `bowling replay`.

@@ -1,13 +1,14 @@
 //! The `bowling` program: who bowls, what is recorded, what is drawn.
 //!
 //! Entry points: [`run`] reads the command line; [`play`], [`replay`], [`query`], [`hard_cases`],
-//! [`shot`] and [`strike_map`] are the commands; a [`session::Session`] takes one input per displayed frame from any device.
+//! [`shot`], [`strike_map`] and [`effects`](mod@effects) are the commands; a [`session::Session`] takes one input per displayed frame from any device.
 
 pub mod args;
 pub mod boundary;
 pub mod choose;
 pub mod convert;
 pub mod devices;
+pub mod effects;
 pub mod hard_cases;
 pub mod journal;
 pub mod motion;
@@ -75,6 +76,9 @@ fn obey(arguments: &Arguments) -> Result<()> {
         Some(Command::Query(arguments)) => query::query(arguments),
         Some(Command::HardCases(arguments)) => hard_cases::hard_cases(arguments),
         Some(Command::Shot(shot)) => shot::shot(shot, &root::find(arguments.root.as_deref())?),
+        Some(Command::Effects(effects)) => {
+            effects::effects(effects, &root::find(arguments.root.as_deref())?)
+        }
         Some(Command::StrikeMap(map)) => {
             strike_map::strike_map(map, &root::find(arguments.root.as_deref())?)
         }

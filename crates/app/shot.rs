@@ -1,7 +1,7 @@
 //! `bowling shot`: throws without hands or pictures, one or thousands, for sweeps and comparisons with other engines.
 
 mod answer;
-mod clock;
+pub(crate) mod clock;
 pub mod distribution;
 mod record;
 pub mod scene;

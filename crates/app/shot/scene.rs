@@ -3,15 +3,14 @@
 use std::path::Path;
 
 use anyhow::Result;
-use game::{BareAlley, Config, ObjectShape, ResponseModel};
+use game::{BareAlley, Config, EffectName, ObjectShape, ResponseModel};
 
 use crate::args::{ModelChoice, ShapeChoice, ThrowArguments, unusable};
 
 /// Settings that have an argument of their own, and its name.
-const OWN_ARGUMENTS: [(&str, &str); 6] = [
+const OWN_ARGUMENTS: [(&str, &str); 5] = [
     ("physics.response", "--model"),
     ("physics.step_hz", "--frame-rate"),
-    ("physics.sleeping", "--no-sleep"),
     ("objects.elasticity", "--elasticity"),
     ("objects.friction_rate", "--friction-rate"),
     ("objects.shape", "--shape"),
@@ -47,7 +46,10 @@ fn config(arguments: &ThrowArguments, root: &Path) -> Result<Config> {
         ModelChoice::Coulomb => ResponseModel::Coulomb,
     };
     config.physics.step_hz = arguments.frame_rate;
-    config.physics.sleeping &= !arguments.no_sleep;
+    if arguments.no_sleep {
+        let effects = &mut config.physics.effects;
+        effects.retain(|effect| *effect != EffectName::Sleeping);
+    }
     let objects = &mut config.objects;
     objects.elasticity = arguments.elasticity.unwrap_or(objects.elasticity);
     objects.friction_rate = arguments.friction_rate.unwrap_or(objects.friction_rate);

@@ -38,6 +38,18 @@ impl Release {
         let axis = towards(self.angle - self.axis_rotation) * DVec3::NEG_X;
         (direction * self.speed, axis * turning)
     }
+
+    /// Puts the scene's ball on the lane, let go like this.
+    ///
+    /// # Errors
+    /// When its place is not free.
+    pub fn put_into(&self, alley: &mut BareAlley) -> Result<BodyId, BareAlleyError> {
+        let config = alley.config();
+        let radius = config.balls.first().map_or(0.0, |ball| ball.radius_m());
+        let z = config.lane.headpin_z_m + self.start;
+        let (linear, angular) = self.velocities(radius);
+        alley.add_ball((self.offset, z), linear, angular)
+    }
 }
 
 /// Velocities of a body.
@@ -100,11 +112,7 @@ impl Flight {
     /// When its place is not free.
     pub fn begin(alley: &BareAlley, release: &Release) -> Result<Self, BareAlleyError> {
         let mut alley = alley.clone();
-        let config = alley.config();
-        let radius = config.balls.first().map_or(0.0, |ball| ball.radius_m());
-        let z = config.lane.headpin_z_m + release.start;
-        let (linear, angular) = release.velocities(radius);
-        let ball = alley.add_ball((release.offset, z), linear, angular)?;
+        let ball = release.put_into(&mut alley)?;
         Ok(Self {
             energy: alley.world.energy(),
             momentum: momentum(&alley.world),

@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use physics::query::{Limits, separation};
-use physics::{BodyId, Compound, Motion, Pose, ShapeError, World};
+use physics::{BodyId, Compound, Motion, Pose, Shape, World};
 
-use crate::config::Config;
+use crate::config::{Config, coulomb};
 use crate::pin_shape::pin_compound;
 use crate::throw::body_is_down;
-use crate::{PINS, alley, bodies};
+use crate::{GameError, PINS, alley, bodies};
 
 /// What is deeper in another body than this cannot begin there [m].
 const OVERLAP: f64 = 1e-6;
@@ -35,12 +35,9 @@ pub enum BareAlleyError {
     /// The scene has no ball.
     #[error("the scene has no ball; give it one in [[balls]]")]
     NoBall,
-    /// Physics refuses a setting.
+    /// The scene cannot be built.
     #[error(transparent)]
-    Settings(#[from] physics::SettingsError),
-    /// Physics refuses a size.
-    #[error(transparent)]
-    Shape(#[from] ShapeError),
+    Scene(#[from] GameError),
 }
 
 impl BareAlley {
@@ -49,11 +46,12 @@ impl BareAlley {
     /// # Errors
     /// On a pin that there is not or that is named twice, and on settings that physics refuses.
     pub fn new(config: &Config, numbers: &[u8]) -> Result<Self, BareAlleyError> {
-        let mut world = bodies::world(config)?;
+        let mut world = bodies::world(config).map_err(GameError::from)?;
         for part in alley::parts(config).iter().filter(|part| part.is_solid) {
-            world.add(bodies::part(config, part)?);
+            bodies::add_part(&mut world, config, part)?;
         }
-        let compound = Arc::new(pin_compound(&config.pin, config.objects.shape)?);
+        let compound =
+            Arc::new(pin_compound(&config.pin, config.objects.shape).map_err(GameError::from)?);
         let spots = alley::pin_spots(&config.lane);
         let mut pins: Vec<(u8, BodyId)> = Vec::new();
         for &number in numbers {
@@ -93,11 +91,24 @@ impl BareAlley {
     ) -> Result<BodyId, BareAlleyError> {
         let ball = self.config.balls.first().ok_or(BareAlleyError::NoBall)?;
         let centre = DVec3::new(x, ball.radius_m(), z);
-        let mut def = bodies::ball(&self.config, ball, centre)?;
+        let mut def = bodies::ball(&self.config, ball, centre).map_err(GameError::from)?;
         if let Some(name) = self.occupant(&def.compound, def.pose) {
             return Err(BareAlleyError::Occupied(name));
         }
         (def.linear_velocity, def.angular_velocity) = (linear, angular);
+        Ok(self.world.add(def))
+    }
+
+    /// Puts the scene's hand at a place [m], world frame: a body that goes where it is driven.
+    ///
+    /// # Errors
+    /// On a hand that physics refuses.
+    pub fn add_hand(&mut self, at: DVec3) -> Result<BodyId, BareAlleyError> {
+        let shape = Shape::sphere(self.config.hand.radius_m).map_err(GameError::from)?;
+        let compound = Arc::new(Compound::single(shape));
+        let (motion, mass) = (Motion::Driven, bodies::immovable());
+        let pose = Pose::from_position(at);
+        let def = bodies::body(&self.config, coulomb::REST, compound, motion, mass, pose);
         Ok(self.world.add(def))
     }
 

@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use physics::{
-    BodyDef, Compound, Effect, Effects, MassProperties, Material, Motion, Pose, Response, Settings,
+    BodyDef, BodyId, Compound, MassProperties, Material, Motion, Pose, Response, Settings,
     SettingsError, Shape, ShapeError, Surface, World,
 };
 
+use crate::GameError;
 use crate::alley::Part;
-use crate::config::{BallConfig, Config, ResponseModel, coulomb};
+use crate::config::{BallConfig, Config, EffectName, ResponseModel, coulomb};
 use crate::pin_shape::pin_mass;
 use crate::visible::Model;
 
@@ -29,9 +30,10 @@ pub(crate) fn world(config: &Config) -> Result<World, SettingsError> {
         },
         iteration_cap: physics.iteration_cap,
         friction_reference_s: physics.friction_reference_s,
-        effects: Effects::default().set(Effect::Sleeping, physics.sleeping),
+        effects: physics.effects.iter().map(|name| name.effect()).collect(),
+        rolling_resistance_m: physics.rolling_resistance_m,
+        air_density_kgpm3: physics.air_density_kgpm3,
         contact: config.coulomb.other.contact(),
-        ..Settings::default()
     })?;
     for (_, a, b, pair) in config.coulomb.pairs() {
         world.set_pair(a, b, pair.contact())?;
@@ -65,11 +67,15 @@ pub(crate) fn body(
     }
 }
 
-/// A solid box of the building.
+/// Adds a solid box of the building, the lane with its oil.
 ///
 /// # Errors
-/// When a length is impossible, which a checked configuration has none of.
-pub(crate) fn part(config: &Config, part: &Part) -> Result<BodyDef, ShapeError> {
+/// When a measure is impossible, which a checked configuration has none of.
+pub(crate) fn add_part(
+    world: &mut World,
+    config: &Config,
+    part: &Part,
+) -> Result<BodyId, GameError> {
     let compound = Arc::new(Compound::single(Shape::cuboid(part.size / 2.0)?));
     let surface = match part.model {
         Model::Lane => coulomb::LANE,
@@ -80,14 +86,23 @@ pub(crate) fn part(config: &Config, part: &Part) -> Result<BodyDef, ShapeError> 
         _ => coulomb::REST,
     };
     let (motion, mass) = (Motion::Fixed, immovable());
-    Ok(body(config, surface, compound, motion, mass, part.pose))
+    let id = world.add(body(config, surface, compound, motion, mass, part.pose));
+    if part.model == Model::Lane && config.physics.effects.contains(&EffectName::Oil) {
+        // The lane's box is upright, and its middle lies behind or before the foul line.
+        let foul_line = -part.pose.position.z;
+        world.set_oil(id, config.oil.pattern(config.lane.width_m, foul_line)?);
+    }
+    Ok(id)
 }
 
 /// A pin that stands on a spot of the deck.
 pub(crate) fn pin(config: &Config, compound: Arc<Compound>, spot: DVec3) -> BodyDef {
     let pose = Pose::from_position(spot + DVec3::Y * config.pin.cg_height_m);
     let mass = pin_mass(&config.pin);
-    body(config, coulomb::PIN, compound, Motion::Dynamic, mass, pose)
+    BodyDef {
+        drag_area_m2: config.pin.drag_area_m2,
+        ..body(config, coulomb::PIN, compound, Motion::Dynamic, mass, pose)
+    }
 }
 
 /// A ball with its centre at `centre`.
@@ -106,7 +121,10 @@ pub(crate) fn ball(
     };
     let pose = Pose::from_position(centre);
     let motion = Motion::Dynamic;
-    Ok(body(config, coulomb::BALL, compound, motion, mass, pose))
+    Ok(BodyDef {
+        drag_area_m2: ball.drag_area_m2,
+        ..body(config, coulomb::BALL, compound, motion, mass, pose)
+    })
 }
 
 /// Mass of what is fixed or driven: physics asks for one and does not use it.

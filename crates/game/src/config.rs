@@ -6,6 +6,7 @@
 
 mod alley;
 pub(crate) mod coulomb;
+mod effects;
 mod layers;
 mod origins;
 mod session;
@@ -20,6 +21,7 @@ pub use alley::{
     StartConfig,
 };
 pub use coulomb::{CoulombConfig, PairConfig};
+pub use effects::{EffectName, OilConfig};
 pub use layers::{ConfigError, Layer};
 pub use session::{
     DisplayConfig, DisplayProfile, DisplayProfileName, ParticipantConfig, PinsetterConfig,
@@ -40,6 +42,8 @@ pub struct Config {
     pub objects: ObjectsConfig,
     /// How pairs of surfaces meet under Coulomb's law.
     pub coulomb: CoulombConfig,
+    /// Oil on the lane.
+    pub oil: OilConfig,
     /// The lane and the pin deck.
     pub lane: LaneConfig,
     /// The gutters on both sides.
@@ -92,8 +96,12 @@ pub struct PhysicsConfig {
     pub iteration_cap: u32,
     /// Interval over which a lasting contact takes the friction rate once [s].
     pub friction_reference_s: f64,
-    /// Whether bodies at rest are left out of the work.
-    pub sleeping: bool,
+    /// What the steps compute; an effect that is not listed executes nothing.
+    pub effects: Vec<EffectName>,
+    /// Arm at which a contact's force resists rolling, read with the effect `rolling_resistance` [m].
+    pub rolling_resistance_m: f64,
+    /// Density of the air, read with the effect `drag` [kg/m3].
+    pub air_density_kgpm3: f64,
 }
 
 /// The collision response of the world.

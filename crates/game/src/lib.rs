@@ -35,10 +35,10 @@ pub use bare_alley::{BareAlley, BareAlleyError};
 pub use condition::{Button, Conditions};
 pub use config::{
     BallConfig, Config, ConfigError, CoulombConfig, DeskConfig, DisplayConfig, DisplayProfile,
-    DisplayProfileName, GutterConfig, HandConfig, KickbackConfig, LaneConfig, Layer, ObjectShape,
-    ObjectsConfig, PairConfig, ParticipantConfig, PhysicsConfig, PinConfig, PinEllipsoidConfig,
-    PinPartsConfig, PinsetterConfig, PitConfig, RackConfig, ReleaseConfig, ReleaseFit,
-    ResponseModel, RoomConfig, RulesConfig, StartConfig, TrackingConfig, WalkingConfig,
+    DisplayProfileName, EffectName, GutterConfig, HandConfig, KickbackConfig, LaneConfig, Layer,
+    ObjectShape, ObjectsConfig, OilConfig, PairConfig, ParticipantConfig, PhysicsConfig, PinConfig,
+    PinEllipsoidConfig, PinPartsConfig, PinsetterConfig, PitConfig, RackConfig, ReleaseConfig,
+    ReleaseFit, ResponseModel, RoomConfig, RulesConfig, StartConfig, TrackingConfig, WalkingConfig,
 };
 pub use event::{
     EndReason, Event, EventKind, Release, ReleaseSource, ReleaseVelocity, TrackedPart,
@@ -73,6 +73,9 @@ pub enum GameError {
     /// Physics refuses a size.
     #[error(transparent)]
     Shape(#[from] physics::ShapeError),
+    /// Physics refuses the lane's oil.
+    #[error(transparent)]
+    Oil(#[from] physics::OilError),
 }
 
 /// A session: the room, the participant in it, and the games that are played.

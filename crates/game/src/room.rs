@@ -165,6 +165,11 @@ impl<'a> Builder<'a> {
     /// Adds a body, and the entity it belongs to.
     fn body(&mut self, def: BodyDef, shown: Shown) -> Entity {
         let id = self.world.add(def);
+        self.own(id, shown)
+    }
+
+    /// The entity that a body belongs to.
+    fn own(&mut self, id: BodyId, shown: Shown) -> Entity {
         let entity = self.ecs.spawn((Physical(id), shown));
         self.owners.insert(id, entity);
         entity
@@ -178,7 +183,7 @@ impl<'a> Builder<'a> {
         self.body(def, shown)
     }
 
-    fn building(&mut self) -> Result<Vec<(Pose, DVec3, Shape)>, ShapeError> {
+    fn building(&mut self) -> Result<Vec<(Pose, DVec3, Shape)>, GameError> {
         let mut obstacles = Vec::new();
         for part in alley::parts(self.config) {
             let shown = Shown {
@@ -189,7 +194,8 @@ impl<'a> Builder<'a> {
             };
             if part.is_solid {
                 let half = part.size / 2.0;
-                self.body(bodies::part(self.config, &part)?, shown);
+                let id = bodies::add_part(&mut self.world, self.config, &part)?;
+                self.own(id, shown);
                 obstacles.push((part.pose, half, Shape::cuboid(half)?));
             } else {
                 self.ecs.spawn((Painted(part.pose), shown));

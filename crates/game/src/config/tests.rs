@@ -109,7 +109,8 @@ fn a_value_out_of_range_is_named_with_file_and_line() {
             .starts_with("config/blue.toml, line 2: key `objects.elasticity`: NaN is out of range"),
         "{message}"
     );
-    let message = refusal("[[balls]]\ndiameter_m = 0.2\nmass_kg = inf\nrg_m = 0.06\n");
+    let message =
+        refusal("[[balls]]\ndiameter_m = 0.2\nmass_kg = inf\nrg_m = 0.06\ndrag_area_m2 = 0.02\n");
     assert!(
         message
             .starts_with("config/blue.toml, line 3: key `balls[0].mass_kg`: inf is out of range"),
@@ -230,7 +231,8 @@ fn no_type_of_the_program_is_named() {
         "objects.shape={a=1}",
         "balls=3",
         "balls=[3]",
-        "physics.sleeping=1",
+        "physics.effects=1",
+        "physics.effects=[\"magnetism\"]",
     ] {
         let message = refused(argument);
         assert!(message.contains(" does not fit; give "), "{message}");

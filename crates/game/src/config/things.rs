@@ -12,6 +12,8 @@ pub struct BallConfig {
     pub mass_kg: f64,
     /// Radius of gyration about every axis [m].
     pub rg_m: f64,
+    /// Drag coefficient times cross-section, read with the effect `drag` [m2].
+    pub drag_area_m2: f64,
 }
 
 impl BallConfig {
@@ -35,6 +37,8 @@ pub struct PinConfig {
     pub i_axial_kgm2: f64,
     /// Moment of inertia about any axis across it, through the centre of gravity [kg m2].
     pub i_transverse_kgm2: f64,
+    /// Drag coefficient times cross-section, read with the effect `drag` [m2].
+    pub drag_area_m2: f64,
     /// The composite of the true shape.
     pub parts: PinPartsConfig,
     /// The single ellipsoid.

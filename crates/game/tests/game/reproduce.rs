@@ -62,10 +62,12 @@ fn every_corner_of_table_1_stays_finite_and_scores() {
 #[test]
 fn pins_stand_untouched_for_a_minute_in_every_condition() {
     for shape in ["true", "ellipsoid"] {
-        for sleeping in ["true", "false"] {
+        let awake =
+            r#"["gravity", "elasticity", "friction", "rotation", "gyroscopic", "continuous"]"#;
+        for effects in [awake, &awake.replace(']', ", \"sleeping\"]")] {
             let shape = format!("objects.shape=\"{shape}\"");
-            let sleeping = format!("physics.sleeping={sleeping}");
-            let mut player = Player::new(conditions(&[&shape, &sleeping]), 1);
+            let effects = format!("physics.effects={effects}");
+            let mut player = Player::new(conditions(&[&shape, &effects]), 1);
             for button in Button::BOTH {
                 player.key(button);
                 player.key(button);
@@ -75,7 +77,7 @@ fn pins_stand_untouched_for_a_minute_in_every_condition() {
                     let drift = was.position.distance(is.position);
                     assert!(
                         drift < 1e-5 && is.lean < 1e-4,
-                        "{shape} {sleeping} {is:?} drifted {drift} m"
+                        "{shape} {effects} {is:?} drifted {drift} m"
                     );
                 }
                 assert!(player.is_ready());

@@ -18,6 +18,13 @@ pub(super) fn physics(config: &Config) -> Result<(), Invalid> {
                 1000.0,
             ),
             (
+                "rolling_resistance_m",
+                physics.rolling_resistance_m,
+                0.0,
+                0.05,
+            ),
+            ("air_density_kgpm3", physics.air_density_kgpm3, 0.0, 10.0),
+            (
                 "friction_reference_s",
                 physics.friction_reference_s,
                 1e-5,
@@ -33,6 +40,7 @@ pub(super) fn physics(config: &Config) -> Result<(), Invalid> {
         ],
     )?;
     coulomb(&config.coulomb)?;
+    oil(config)?;
     ranges("tracking", &[("rate_hz", rate, 20.0, 1000.0)])?;
     let steps = physics.step_hz / rate;
     relation(
@@ -57,6 +65,23 @@ fn coulomb(coulomb: &CoulombConfig) -> Result<(), Invalid> {
         )?;
     }
     Ok(())
+}
+
+/// Oil on the lane.
+fn oil(config: &Config) -> Result<(), Invalid> {
+    let (oil, lane) = (&config.oil, &config.lane);
+    let factor = |key, value| (key, value, 0.0, 10.0);
+    let factors = [
+        factor("middle_factor", oil.middle_factor),
+        factor("edge_factor", oil.edge_factor),
+    ];
+    ranges("oil", &factors)?;
+    let length = ("length_m", oil.length_m, 0.1, -lane.deck_end_z_m);
+    limited("oil", length, &["lane.deck_end_z_m"])?;
+    let taper = ("taper_m", oil.taper_m, 1e-3, oil.length_m);
+    limited("oil", taper, &["oil.length_m"])?;
+    let flat = ("flat_width_m", oil.flat_width_m, 0.0, 0.99 * lane.width_m);
+    limited("oil", flat, &["lane.width_m"])
 }
 
 /// What is down, and when a throw ends.

@@ -26,6 +26,7 @@ fn ball(table: &str, ball: &BallConfig) -> Result<(), Invalid> {
             ("diameter_m", ball.diameter_m, 0.05, 0.4),
             ("mass_kg", ball.mass_kg, 0.1, 50.0),
             ("rg_m", ball.rg_m, least, most),
+            ("drag_area_m2", ball.drag_area_m2, 0.0, 1.0),
         ],
     )
 }
@@ -38,6 +39,7 @@ pub(super) fn pin(pin: &PinConfig) -> Result<(), Invalid> {
         &[
             ("mass_kg", pin.mass_kg, 0.1, 20.0),
             ("height_m", height, 0.1, 1.0),
+            ("drag_area_m2", pin.drag_area_m2, 0.0, 1.0),
             ("i_axial_kgm2", pin.i_axial_kgm2, 1e-6, 10.0),
             ("i_transverse_kgm2", pin.i_transverse_kgm2, 1e-6, 10.0),
         ],
