@@ -53,10 +53,9 @@ fn plan(scene: &str, world: &World) -> String {
     );
     for planned in world.plan() {
         let stage = planned.stage;
-        let when = if stage.is_in_tick() { "tick" } else { "step" };
         let names: Vec<&str> = planned.effects.iter().map(Effect::name).collect();
         let line = format!(
-            "  each {when}  {:<11}{:<46}{}",
+            "  {:<11}{:<46}{}",
             stage.name(),
             stage.purpose(),
             names.join(", ")

@@ -51,11 +51,13 @@ pub struct Body {
     pub(crate) middle: f64,
     /// Time inside the current step up to which the state has been brought [s].
     pub(crate) clock: f64,
-    /// Pose at the end of the step if nothing more happens.
+    /// Time inside the step up to which its motion is known: the end of its stretch [s].
+    pub(crate) until: f64,
+    /// Pose at that time if nothing more happens.
     pub(crate) end: Pose,
     /// Upper bound of the way of any surface point since the body was made [m].
     pub(crate) path: f64,
-    /// The same for the rest of the step.
+    /// The same up to `until`.
     pub(crate) reach: f64,
     /// Bound of the way in a step that the waits of its pairs count on [m]; see `step/near.rs`.
     pub(crate) pace: f64,
@@ -111,6 +113,7 @@ impl Body {
             bend: STRAIGHT,
             middle: 0.0,
             clock: 0.0,
+            until: 0.0,
             end: def.pose,
             path: 0.0,
             reach: 0.0,

@@ -111,8 +111,8 @@ pub struct Impact {
 /// How much work a world's steps were so far: counts, not times, so that they are the same on every machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Effort {
-    /// Ticks that the steps were taken in.
-    pub ticks: u64,
+    /// Stretches of time that islands of lasting contacts were carried through.
+    pub stretches: u64,
     /// Contacts that came about and were answered.
     pub events: u64,
     /// Impulses given in their answers.

@@ -98,7 +98,7 @@ impl Rough {
         // A new game is a new world.
         let spent = |now: u64, last: u64| if now < last { now } else { now - last };
         let frame = Effort {
-            ticks: spent(now.ticks, self.last.ticks),
+            stretches: spent(now.stretches, self.last.stretches),
             events: spent(now.events, self.last.events),
             impulses: spent(now.impulses, self.last.impulses),
             looks: spent(now.looks, self.last.looks),

@@ -125,9 +125,9 @@ impl Body {
         Sweep::new(along, across, self.compound.bounding_radius())
     }
 
-    /// Recomputes reach and end pose for the rest of a step of `dt`, after a change of velocity.
-    pub(crate) fn look_ahead(&mut self, dt: f64) {
-        let rest = dt - self.clock;
+    /// Recomputes reach and end pose up to `until`, after a change of velocity.
+    pub(crate) fn look_ahead(&mut self) {
+        let rest = self.until - self.clock;
         if (self.linear, self.momentum, self.turning, self.acceleration)
             == (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO, DVec3::ZERO)
         {
@@ -138,7 +138,7 @@ impl Body {
         let sweep = self.sweep();
         self.reach = (self.linear.length() + sweep.turning) * rest
             + 0.5 * self.acceleration.length() * rest * rest;
-        self.end = self.pose_at(dt);
+        self.end = self.pose_at(self.until);
     }
 
     /// Pose at time `t` [s] of the step, exact for free flight of an axisymmetric or a driven body.
@@ -162,6 +162,15 @@ impl Body {
             },
         };
         Pose::new(position, rotation.normalize())
+    }
+
+    /// The same, with the end of the stretch at hand.
+    pub(crate) fn pose_until(&self, t: f64) -> Pose {
+        if t == self.until || self.reach == 0.0 {
+            self.end
+        } else {
+            self.pose_at(t)
+        }
     }
 
     /// Torque-free rotation for `dt` [s].
@@ -207,7 +216,7 @@ impl Body {
     }
 
     /// Brings the state to time `t` [s] of the step.
-    pub(crate) fn advance(&mut self, t: f64, dt: f64) {
+    pub(crate) fn advance(&mut self, t: f64) {
         if t <= self.clock {
             return;
         }
@@ -215,7 +224,7 @@ impl Body {
             let elapsed = t - self.clock;
             let speed = self.linear.length() + self.sweep().turning;
             self.path += elapsed * (speed + 0.5 * self.acceleration.length() * elapsed);
-            let pose = if t == dt { self.end } else { self.pose_at(t) };
+            let pose = self.pose_until(t);
             self.position = pose.position;
             self.turn_to(pose.rotation);
             self.linear += self.acceleration * (t - self.clock);

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::pairs::Key;
 use super::touch::{Frame, place};
-use super::{CONTACT, SINK};
+use super::{CONTACT, PARTING, SINK};
 use crate::advance::{Grade, Held, hold};
 use crate::body::Body;
 use crate::compound::Part;
@@ -19,8 +19,6 @@ use crate::world::World;
 const SEARCHES: u32 = 40;
 /// A dip between two times that is no deeper than this is not looked for [m].
 const DIP: f64 = 2e-6;
-/// Bodies that overlap and part slower than this are in contact [m/s].
-const PARTING: f64 = 5e-3;
 /// Slower approach than this is none [m/s].
 const APPROACH: f64 = 1e-9;
 

@@ -1,6 +1,6 @@
 //! Resistance of the air: `-1/2 rho C_d A |v| v` on the centre of mass.
 //!
-//! Half of a step's drag comes before its ticks and half after them, so that what gravity and contacts do in between is
+//! Half of a step's drag comes before all else and half after it, so that what gravity and contacts do in between is
 //! right to second order (Strang's splitting). Without them the two halves are the exact solution for the whole step,
 //! `v / (1 + k |v| dt)`. Turning is not slowed.
 

@@ -2,13 +2,13 @@
 
 use glam::DVec3;
 
-use super::RELEASE;
 use super::base::Base;
 use super::pairs::Key;
 use super::patch::strike_point;
 use super::scratch::Answer;
-use super::search::Event;
+use super::search::{Event, What};
 use super::touch::Touch;
+use super::{PARTING, RELEASE, SINK};
 use crate::body::Body;
 use crate::effects::Effect;
 use crate::response::{Coefficients, impulse, smooth_impulse};
@@ -16,14 +16,15 @@ use crate::world::{Impact, World};
 
 /// Most impulses in answer to one event.
 const ROUNDS: usize = 60;
-/// Impulses that a body takes in a step before restitution is dropped.
+/// Impulses that a body takes in 1/720 s before restitution is dropped.
 ///
 /// What bounces between two walls that approach each other does so endlessly in a finite time, and gains speed.
 const ELASTIC_BLOWS: u32 = 24;
-/// Impulses that a body takes in a step before it is squeezed.
+/// Impulses that a body takes in 1/720 s before it is squeezed.
 ///
 /// Then whatever holds it cannot be satisfied, as between the hand and a wall: it stops, and what moves on overlaps it.
-/// Every impulse moves a body that is not squeezed yet, so that no step has more than this for each body.
+/// Every impulse moves a body that is not squeezed yet, so that no step has more than this for each body. A longer step
+/// has room for more: bodies that turn round each other touch anew every few hundredths of a millimetre.
 const BLOWS: u32 = 64;
 /// Slower approach than this is left to the lasting contact [m/s].
 const APPROACH: f64 = 1e-6;
@@ -39,6 +40,7 @@ impl World {
             self.look(pair, 0.0, dt);
         }
         self.scratch.due = due;
+        self.announce_renewals();
         let mut answer = std::mem::take(&mut self.scratch.answer);
         while let Some(next) = self.scratch.events.pop() {
             if !self.is_valid(&next) {
@@ -47,9 +49,17 @@ impl World {
             if next.time >= dt {
                 break;
             }
-            self.effort.events += 1;
-            self.answer(next, dt, &mut answer);
+            match next.what {
+                What::Meet { key, .. } => {
+                    self.effort.events += 1;
+                    self.answer(key, next.time, dt, &mut answer);
+                }
+                What::StretchEnds { slot, .. } => {
+                    self.carry_on(slot as usize, next.time, dt, &mut answer);
+                }
+            }
             self.look_again(&answer.bodies, next.time, dt);
+            self.announce_renewals();
             answer.clear();
         }
         self.scratch.events.clear();
@@ -61,13 +71,12 @@ impl World {
         if let Some((time, key)) = self.first_contact(pair, t, dt) {
             self.announced += 1;
             let changes = |slot: u32| self.bodies[slot as usize].changes;
-            let event = Event {
+            let changes = (changes(key.a), changes(key.b));
+            self.scratch.events.push(Event {
                 time,
-                key,
                 number: self.announced,
-                changes: (changes(key.a), changes(key.b)),
-            };
-            self.scratch.events.push(event);
+                what: What::Meet { key, changes },
+            });
         }
         self.wait(pair);
     }
@@ -89,21 +98,23 @@ impl World {
         }
     }
 
-    /// Whether neither body has changed its motion since the contact was foreseen.
+    /// Whether no body concerned has changed its motion since the event was foreseen.
     fn is_valid(&self, event: &Event) -> bool {
-        let changes = |slot: u32| self.bodies[slot as usize].changes;
-        event.changes == (changes(event.key.a), changes(event.key.b))
+        let now = |slot: u32| self.bodies[slot as usize].changes;
+        match event.what {
+            What::Meet { key, changes } => changes == (now(key.a), now(key.b)),
+            What::StretchEnds { slot, changes } => changes == now(slot),
+        }
     }
 
     /// Answers one contact and what follows from it at once; notes the bodies involved.
-    fn answer(&mut self, event: Event, dt: f64, answer: &mut Answer) {
-        let t = event.time;
+    fn answer(&mut self, key: Key, t: f64, dt: f64, answer: &mut Answer) {
         let Answer {
             bodies,
             struck,
             touches,
         } = answer;
-        self.involve(event.key, t, dt, bodies, touches);
+        self.involve(key, t, bodies, touches);
         for round in 0..ROUNDS {
             let Some(worst) = self.most_approaching(touches, round == 0) else {
                 break;
@@ -115,42 +126,35 @@ impl World {
             for slot in [touch.a, touch.b] {
                 if !struck.contains(&slot) && self.bodies[slot].is_dynamic() {
                     struck.push(slot);
-                    self.spread(slot, t, dt, bodies, touches);
+                    self.spread(slot, t, bodies, touches);
                 }
             }
         }
         if struck.is_empty() {
             // Nothing approaches: the contact only begins. Its bodies still change from flight to support.
-            struck.extend([event.key.a as usize, event.key.b as usize]);
+            struck.extend([key.a as usize, key.b as usize]);
             for slot in &*struck {
                 self.bodies[*slot].blows += 1;
             }
             self.squeeze(&touches[0]);
             struck.retain(|slot| self.bodies[*slot].is_active());
             for slot in &*struck {
-                self.spread(*slot, t, dt, bodies, touches);
+                self.spread(*slot, t, bodies, touches);
             }
         }
         self.settle_touches(touches);
         for slot in &*struck {
             self.bodies[*slot].still_for = 0.0;
         }
-        self.join(struck, bodies, touches, t, dt);
+        self.join(struck, bodies, touches, t);
         self.set_off(struck, touches, t, dt);
         for slot in &*bodies {
-            self.bodies[*slot].look_ahead(dt);
+            self.bodies[*slot].look_ahead();
         }
     }
 
     /// Brings a contact and its bodies into play.
-    fn involve(
-        &mut self,
-        key: Key,
-        t: f64,
-        dt: f64,
-        bodies: &mut Vec<usize>,
-        touches: &mut Vec<Touch>,
-    ) {
+    fn involve(&mut self, key: Key, t: f64, bodies: &mut Vec<usize>, touches: &mut Vec<Touch>) {
         if touches.iter().any(|known| known.key == key) {
             return;
         }
@@ -159,21 +163,14 @@ impl World {
                 bodies.push(slot);
             }
             self.rouse(slot);
-            self.bodies[slot].advance(t, dt);
+            self.bodies[slot].advance(t);
         }
         let touch = self.touch(key);
         touches.push(touch);
     }
 
     /// A body got an impulse: it wakes, and its other contacts come into play.
-    fn spread(
-        &mut self,
-        slot: usize,
-        t: f64,
-        dt: f64,
-        bodies: &mut Vec<usize>,
-        touches: &mut Vec<Touch>,
-    ) {
+    fn spread(&mut self, slot: usize, t: f64, bodies: &mut Vec<usize>, touches: &mut Vec<Touch>) {
         if !self.bodies[slot].is_dynamic() {
             return;
         }
@@ -182,7 +179,7 @@ impl World {
         }
         for i in 0..self.pairs.contacts(slot).len() {
             let key = self.pairs.contacts(slot)[i].key;
-            self.involve(key, t, dt, bodies, touches);
+            self.involve(key, t, bodies, touches);
         }
     }
 
@@ -209,7 +206,8 @@ impl World {
     fn strike(&mut self, touch: &Touch, elastic: bool) {
         let slip = touch.slip(&self.bodies);
         let approach = touch.normal.dot(slip);
-        let worn = |slot: usize| self.bodies[slot].blows >= ELASTIC_BLOWS;
+        let most = self.patience(ELASTIC_BLOWS);
+        let worn = |slot: usize| self.bodies[slot].blows >= most;
         // A slow touch is the beginning of a lasting contact, and that has a friction of its own.
         let is_soft = approach < self.resting_speed() || !elastic || worn(touch.a) || worn(touch.b);
         let impulse = self.impact_impulse(touch, slip, is_soft);
@@ -250,11 +248,17 @@ impl World {
         impulse(self.settings.response, pair, n, slip, &k)
     }
 
+    /// So many blows of 1/720 s as blows of a step.
+    fn patience(&self, blows: u32) -> u32 {
+        blows * (720.0 * self.dt() - 1e-6).ceil().max(1.0) as u32
+    }
+
     /// Stops the bodies of a contact that have taken too many blows, for the rest of the step.
     fn squeeze(&mut self, touch: &Touch) {
+        let most = self.patience(BLOWS);
         for slot in [touch.a, touch.b] {
             let body = &mut self.bodies[slot];
-            if body.is_dynamic() && body.blows >= BLOWS {
+            if body.is_dynamic() && body.blows >= most {
                 body.squeezed = true;
                 // A broken state is not to look sound again: its body is frozen when the step ends.
                 if body.is_finite() {
@@ -271,6 +275,12 @@ impl World {
             let mut touch = *touch;
             aim(&mut touch, &self.bodies);
             let separating = -touch.normal.dot(touch.slip(&self.bodies));
+            // What overlaps and hardly parts would touch again at once, and for ever.
+            let leaving = if touch.gap < -SINK {
+                leaving.max(PARTING)
+            } else {
+                leaving
+            };
             let lasts = separating < leaving && touch.gap < RELEASE;
             if lasts {
                 self.pairs.set_touching(touch.key, true);
@@ -284,17 +294,16 @@ impl World {
     ///
     /// Were one body of a pile set off anew while its neighbour stays in the stretch it is in, the neighbour would
     /// be held up twice: by what that stretch has in store for it, and by the new one.
-    fn join(
+    pub(super) fn join(
         &mut self,
         struck: &mut Vec<usize>,
         bodies: &mut Vec<usize>,
         touches: &mut Vec<Touch>,
         t: f64,
-        dt: f64,
     ) {
         let mut next = 0;
         while let Some(slot) = struck.get(next).copied() {
-            self.spread(slot, t, dt, bodies, touches);
+            self.spread(slot, t, bodies, touches);
             // A contact that the impact ended held the two together until now.
             for touch in touches.iter().filter(|on| on.a == slot || on.b == slot) {
                 let other = touch.a + touch.b - slot;
@@ -307,7 +316,7 @@ impl World {
     }
 
     /// Chooses flight or support of bodies for the rest of the step.
-    fn set_off(&mut self, joined: &[usize], touches: &[Touch], t: f64, dt: f64) {
+    pub(super) fn set_off(&mut self, joined: &[usize], touches: &[Touch], t: f64, dt: f64) {
         let (gravity, falls) = (self.plan.gravity, self.plan.has(Effect::Gravity));
         let mut carried = std::mem::take(&mut self.scratch.carried);
         for slot in joined {
@@ -318,6 +327,7 @@ impl World {
             }
             body.straighten();
             body.acceleration = if is_carried { DVec3::ZERO } else { gravity };
+            body.until = dt;
             if falls && !is_carried {
                 self.effort.work.add(Effect::Gravity, 1);
             }
@@ -325,8 +335,7 @@ impl World {
                 carried.push(*slot);
             }
         }
-        let span = dt - t;
-        if !carried.is_empty() && span >= 1e-9 {
+        if !carried.is_empty() && dt - t >= 1e-9 {
             let mut lasting = std::mem::take(&mut self.scratch.touches);
             let movable = |touch: &Touch| {
                 let slots = [touch.a, touch.b];
@@ -334,7 +343,7 @@ impl World {
             };
             let lasts = |touch: &&Touch| self.pairs.part(touch.key).touching && movable(touch);
             lasting.extend(touches.iter().filter(lasts));
-            self.carry(&lasting, &carried, span);
+            self.carry(&lasting, &carried, t, dt);
             lasting.clear();
             self.scratch.touches = lasting;
         }

@@ -76,7 +76,7 @@ impl World {
                 let touch: Touch = self.touch(contact.key);
                 touches.push(touch);
             }
-            self.carry(&touches, &slots, dt);
+            self.carry(&touches, &slots, 0.0, dt);
             touches.clear();
             slots.clear();
         }

@@ -1,4 +1,4 @@
-//! One fixed step, tick by tick: lasting contacts, then impacts in the order of time, then sleep.
+//! One fixed step: lasting contacts, then impacts in the order of time, then sleep.
 
 pub(crate) mod near;
 pub(crate) mod pairs;
@@ -21,6 +21,7 @@ mod row;
 mod search;
 mod sleep;
 mod solve;
+mod stretch;
 mod touch;
 mod tree;
 
@@ -29,8 +30,7 @@ pub(crate) use touch::place;
 
 use glam::DVec3;
 
-use self::pairs::{Contact, Key};
-use self::plan::{Plan, Stage};
+use self::plan::Stage;
 use crate::body::Spin;
 use crate::effects::Effect;
 use crate::world::World;
@@ -39,100 +39,52 @@ use crate::world::World;
 pub(crate) const CONTACT: f64 = 1e-7;
 /// A lasting contact may sink this far in a step before it is struck again [m].
 pub(crate) const SINK: f64 = 1e-5;
-/// Ticks per second of a base that rocks, and of contacts that change little.
-const FINEST: f64 = 720.0;
-const COARSEST: f64 = 180.0;
-/// How far a body with a lasting contact may turn in a tick [rad].
-const TURN: f64 = 0.04;
+/// Bodies that overlap and part slower than this are in contact [m/s].
+pub(crate) const PARTING: f64 = 5e-3;
 /// Gap beyond which a lasting contact is given up [m].
 pub(crate) const RELEASE: f64 = 1e-5;
 
 impl World {
-    /// Advances by one fixed step of `1 / step_hz` seconds, in as many ticks as what happens in it needs.
+    /// Advances by one fixed step of `1 / step_hz` seconds.
     pub fn step(&mut self) {
+        let dt = self.dt();
         self.impacts.clear();
         self.steps += 1;
         self.awake.sort_unstable();
         if self.is_quiet() {
             return;
         }
-        let whole = self.dt();
-        self.run_stages(|plan| &plan.before, whole);
-        let mut left = whole;
-        while left > 0.0 {
-            self.effort.ticks += 1;
-            // The last tick is all that is left, so that this ends at zero.
-            left -= self.run_stages(|plan| &plan.tick, left);
-        }
-        self.run_stages(|plan| &plan.after, whole);
-        self.dismiss();
-    }
-
-    /// Runs some stages of the plan over at most `dt` seconds; returns the length that they chose.
-    fn run_stages(&mut self, of: fn(&Plan) -> &[Stage], mut dt: f64) -> f64 {
-        for i in 0..of(&self.plan).len() {
-            match of(&self.plan)[i] {
+        for i in 0..self.plan.stages.len() {
+            match self.plan.stages[i] {
                 Stage::Drive => self.aim_driven(dt),
                 Stage::Slow | Stage::SlowAgain => self.slow_in_air(dt),
                 Stage::WakeHeld => self.wake_driven_neighbours(),
-                Stage::Gather => dt = self.gather_tick(dt),
+                Stage::Gather => self.gather_lasting(dt),
                 Stage::Carry => self.rest(dt),
                 Stage::Strike => self.run_events(dt),
                 Stage::Arrive => self.arrive(dt),
                 Stage::Sleep => self.fall_asleep(dt),
             }
         }
-        dt
+        self.dismiss();
     }
 
-    /// Notes the lasting contacts of a tick of at most `left` seconds; returns its length.
-    fn gather_tick(&mut self, left: f64) -> f64 {
+    /// Notes the lasting contacts of a step of `dt` seconds.
+    fn gather_lasting(&mut self, dt: f64) {
         self.awake.sort_unstable();
         for slot in &self.awake {
-            self.bodies[*slot as usize].acceleration = DVec3::ZERO;
+            let body = &mut self.bodies[*slot as usize];
+            (body.acceleration, body.until) = (DVec3::ZERO, dt);
         }
         let mut lasting = std::mem::take(&mut self.scratch.lasting);
         self.gather(&mut lasting);
-        let dt = self.tick_length(&lasting, left);
         self.scratch.lasting = lasting;
-        dt
     }
 
     fn arrive(&mut self, dt: f64) {
         for i in 0..self.awake.len() {
-            self.end_tick(self.awake[i] as usize, dt);
+            self.end_step(self.awake[i] as usize, dt);
         }
-    }
-
-    /// Length of the next tick [s]: `left` in equal parts, as many as the most demanding contact asks for.
-    fn tick_length(&self, lasting: &[Contact], left: f64) -> f64 {
-        let rates = lasting.iter().map(|contact| self.tick_rate(contact.key));
-        let rate = rates.fold(0.0, f64::max);
-        let ticks = (left * rate - 1e-6).ceil();
-        if ticks > 1.0 { left / ticks } else { left }
-    }
-
-    /// Ticks per second that a lasting contact needs.
-    ///
-    /// Flight is exact however long it lasts, and so is rest. A base that tilts changes its mind about where it
-    /// stands, and a body that turns takes its contacts round with it.
-    fn tick_rate(&self, key: Key) -> f64 {
-        let tilts = self
-            .pairs
-            .known(key)
-            .is_some_and(|touch| touch.on_base && touch.base.is_none());
-        if tilts {
-            return FINEST;
-        }
-        let turning = [key.a, key.b].map(|slot| {
-            let body = &self.bodies[slot as usize];
-            if body.is_active() {
-                body.turning_across()
-            } else {
-                0.0
-            }
-        });
-        (turning[0].max(turning[1]) / TURN).clamp(COARSEST, FINEST)
     }
 
     /// Whether nothing moves and nobody is told to: a step then only counts.
@@ -174,10 +126,10 @@ impl World {
         (self.plan.gravity.length() / 360.0).max(1e-4)
     }
 
-    /// Brings a body to the end of the tick; one whose state is no state any more stops where it last was.
-    pub(super) fn end_tick(&mut self, slot: usize, dt: f64) {
+    /// Brings a body to the end of the step; one whose state is no state any more stops where it last was.
+    pub(super) fn end_step(&mut self, slot: usize, dt: f64) {
         let body = &mut self.bodies[slot];
-        body.advance(dt, dt);
+        body.advance(dt);
         if body.momentum != DVec3::ZERO {
             self.effort.work.add(Effect::Rotation, 1);
             if body.spin == Spin::Free {

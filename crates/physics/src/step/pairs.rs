@@ -300,13 +300,6 @@ impl Pairs {
         Some(&mut seen.loads)
     }
 
-    /// The contact as it was seen last.
-    pub fn known(&self, key: Key) -> Option<&Touch> {
-        self.seen
-            .get(self.part(key).seen as usize)
-            .map(|seen| &seen.touch)
-    }
-
     /// The contact as it was seen last, if neither body has moved since: their ways [m] are still these.
     pub fn seen(&self, key: Key, ways: (f64, f64)) -> Option<Touch> {
         let seen = self.seen.get(self.part(key).seen as usize)?;

@@ -19,13 +19,13 @@ pub enum Stage {
     Slow,
     /// What a moving driven body touches wakes.
     WakeHeld,
-    /// The lasting contacts and how far the next tick may reach.
+    /// The lasting contacts.
     Gather,
     /// Lasting contacts are answered, and all bodies are set off.
     Carry,
     /// Contacts that come about, in the order of time, are answered.
     Strike,
-    /// Bodies are brought to the end of the tick.
+    /// Bodies are brought to the end of the step.
     Arrive,
     /// Groups of bodies at rest fall asleep.
     Sleep,
@@ -55,18 +55,13 @@ impl Stage {
             Stage::Drive => "driven bodies head for their targets",
             Stage::Slow => "first half of the air's drag",
             Stage::WakeHeld => "what a moving hand touches wakes",
-            Stage::Gather => "lasting contacts, and the length of the tick",
+            Stage::Gather => "lists the lasting contacts",
             Stage::Carry => "answers lasting contacts, sets bodies off",
             Stage::Strike => "finds and answers contacts that come about",
-            Stage::Arrive => "brings bodies to the end of the tick",
+            Stage::Arrive => "brings bodies to the end of the step",
             Stage::Sleep => "groups at rest fall asleep",
             Stage::SlowAgain => "second half of the air's drag",
         }
-    }
-
-    /// Whether it runs in every tick of a step, and not once before or after them.
-    pub fn is_in_tick(self) -> bool {
-        !matches!(self, Stage::Drive | Stage::Slow | Stage::SlowAgain)
     }
 
     /// Effects that act in it.
@@ -127,10 +122,8 @@ pub(crate) struct Plan {
     pub friction: Source,
     /// Arm of the rolling resistance [m], if there is any.
     pub rolling: Option<f64>,
-    /// Stages before the ticks, in every tick, and after them.
-    pub before: Vec<Stage>,
-    pub tick: Vec<Stage>,
-    pub after: Vec<Stage>,
+    /// In the order in which a step runs them.
+    pub stages: Vec<Stage>,
 }
 
 impl Plan {
@@ -157,20 +150,18 @@ impl Plan {
             elasticity: source(Effect::Elasticity),
             friction: source(Effect::Friction),
             rolling: has(Effect::RollingResistance).then_some(settings.rolling_resistance_m),
-            before: stages(&[
+            stages: stages(&[
                 // Driven bodies move whether they touch something or not.
                 (Stage::Drive, called.contains(Effect::Hand)),
                 (Stage::Slow, has(Effect::Drag)),
-            ]),
-            tick: stages(&[
                 (Stage::WakeHeld, has(Effect::Hand)),
                 (Stage::Gather, true),
                 (Stage::Carry, true),
                 (Stage::Strike, true),
                 (Stage::Arrive, true),
                 (Stage::Sleep, has(Effect::Sleeping)),
+                (Stage::SlowAgain, has(Effect::Drag)),
             ]),
-            after: stages(&[(Stage::SlowAgain, has(Effect::Drag))]),
         }
     }
 
@@ -180,8 +171,7 @@ impl Plan {
 
     /// Its stages, in the order in which a step runs them.
     pub fn stages(&self) -> impl Iterator<Item = PlannedStage> + '_ {
-        let all = self.before.iter().chain(&self.tick).chain(&self.after);
-        all.map(|stage| PlannedStage {
+        self.stages.iter().map(|stage| PlannedStage {
             stage: *stage,
             effects: stage
                 .effects()

@@ -25,13 +25,15 @@ use crate::world::World;
 
 /// Depth that a lasting contact keeps [m]; deeper ones are pushed out slowly.
 const SLOP: f64 = 5e-6;
+/// Speed at which an overlap of bodies that do not turn is opened [m/s]: lifting all pins that fast for a step of 1/60 s takes 1e-5 of a ball's energy.
+const PUSH: f64 = 1e-3;
 /// Points of a contact nearer to each other than this from one step to the next are the same [m].
 const SAME: f64 = 0.01;
 /// Gap that is not worth closing [m]; a standing pin then has no velocity at all.
-const EXACT: f64 = 1e-9;
+const EXACT: f64 = 1e-7;
 
 impl World {
-    /// Answers the lasting contacts, and sets everybody off for the tick.
+    /// Answers the lasting contacts, and sets everybody off.
     pub(crate) fn rest(&mut self, dt: f64) {
         let mut carried = std::mem::take(&mut self.scratch.found);
         let mut lasting = std::mem::take(&mut self.scratch.lasting);
@@ -54,16 +56,24 @@ impl World {
         lasting.clear();
         self.scratch.lasting = lasting;
         for slot in &self.awake {
-            self.bodies[*slot as usize].look_ahead(dt);
+            self.bodies[*slot as usize].look_ahead();
         }
         carried.clear();
         self.scratch.found = carried;
     }
 
-    /// Takes the bodies `carried` through a stretch of `span` seconds that begins at their clocks.
+    /// Takes the bodies `carried` through a stretch that begins at `t` and ends at `dt` [s], or earlier if that is too long.
     ///
     /// Other bodies of the `touches`, those that still sleep, only take impulses.
-    pub(crate) fn carry(&mut self, touches: &[Touch], carried: &[usize], span: f64) {
+    pub(crate) fn carry(&mut self, touches: &[Touch], carried: &[usize], t: f64, dt: f64) {
+        let span = self.stretch(touches, dt - t);
+        let until = if span < dt - t { t + span } else { dt };
+        self.effort.stretches += 1;
+        if let [first, ..] = carried
+            && until < dt
+        {
+            self.scratch.renewals.push((until, *first as u32));
+        }
         let half = 0.5 * span;
         let kick = self.plan.gravity * half;
         let halves = Halves {
@@ -103,7 +113,7 @@ impl World {
                 body.momentum = inertia * middle.angular;
                 let halves = [change(before, middle), change(middle, now)];
                 body.bend = halves.map(|(linear, turned)| (linear / half, turned / half));
-                body.middle = body.clock + half;
+                (body.middle, body.until) = (body.clock + half, until);
             } else {
                 let (linear, turned) = change(before, now);
                 body.linear += linear;
@@ -134,7 +144,7 @@ impl World {
     }
 
     /// Lasting contacts of awake bodies that have to be answered, by age; counts them per body.
-    pub(crate) fn gather(&mut self, lasting: &mut Vec<Contact>) {
+    pub(super) fn gather(&mut self, lasting: &mut Vec<Contact>) {
         for slot in &self.awake {
             let slot = *slot as usize;
             let body = &mut self.bodies[slot];
@@ -269,7 +279,10 @@ impl World {
         let fastest = if hasty {
             0.3
         } else {
-            0.25 * self.resting_speed()
+            // A body that turns on sinks into what it turns on, and is lifted back as fast.
+            let sweep = |slot: usize| self.bodies[slot].sweep().acceleration;
+            let sinking = 0.5 * dt * (sweep(touch.a) + sweep(touch.b));
+            (PUSH + sinking).min(0.125 * self.resting_speed())
         };
         -((-touch.gap - SLOP).max(0.0) / dt).min(fastest)
     }

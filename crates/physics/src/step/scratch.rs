@@ -19,6 +19,8 @@ pub(crate) struct Scratch {
     pub stack: Vec<u32>,
     pub found: Vec<u32>,
     pub events: BinaryHeap<Event>,
+    /// Ends of stretches that have just begun [s], with a body of each.
+    pub renewals: Vec<(f64, u32)>,
     pub answer: Answer,
     pub touches: Vec<Touch>,
     pub carried: Vec<usize>,

@@ -12,15 +12,22 @@ use crate::pose::Pose;
 use crate::query::distance_to_point;
 use crate::world::World;
 
-/// A future contact.
+/// Something that will happen in the step, as long as nothing changes the motion of its bodies before.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Event {
     pub time: f64,
-    pub key: Key,
-    /// Place in the order in which contacts were foreseen; of two at the same time the first comes first.
+    /// Place in the order in which events were foreseen; of two at the same time the first comes first.
     pub number: u64,
-    /// How often the bodies had changed their motion when it was foreseen; see `Body::changes`.
-    pub changes: (u32, u32),
+    pub what: What,
+}
+
+/// What will happen, and how often the bodies had changed their motion when it was foreseen; see `Body::changes`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum What {
+    /// Two parts touch.
+    Meet { key: Key, changes: (u32, u32) },
+    /// The stretch ends in which an island is carried, `slot` being one of its bodies.
+    StretchEnds { slot: u32, changes: u32 },
 }
 
 /// The earliest is the greatest, so that a heap gives it first.
@@ -47,14 +54,22 @@ impl PartialEq for Event {
 impl Eq for Event {}
 
 impl World {
-    /// Earliest contact of two bodies after `t0`, both states standing at or before it.
+    /// Earliest contact of two bodies after `t0`, both states standing at or before it, as far as their motion is known.
     pub(crate) fn first_contact(&mut self, pair: u32, t0: f64, dt: f64) -> Option<(f64, Key)> {
         let entry = self.pairs.get(pair);
         let (a, b) = (entry.a as usize, entry.b as usize);
         let (pose_a, pose_b) = self.near(pair, t0)?;
         let (body_a, body_b) = (&self.bodies[a], &self.bodies[b]);
         let starts = (Frame::new(&pose_a), Frame::new(&pose_b));
-        let ends = (Frame::new(&body_a.end), Frame::new(&body_b.end));
+        let until = horizon(body_a, dt).min(horizon(body_b, dt));
+        if until <= t0 {
+            // One of them is about to be set off anew, and will look then.
+            return None;
+        }
+        let ends = (
+            Frame::new(&body_a.pose_until(until)),
+            Frame::new(&body_b.pose_until(until)),
+        );
         let (ways, reach) = (body_a.path + body_b.path, body_a.reach + body_b.reach);
         let mut first: Option<(f64, Key)> = None;
         let mut clearance = f64::INFINITY;
@@ -70,7 +85,7 @@ impl World {
                 pair,
                 part: part as u32,
             };
-            let found = Approach::search(self, key, (t0, dt), &starts, &ends);
+            let found = Approach::search(self, key, (t0, until), &starts, &ends);
             self.effort.looks += u64::from(found.looks);
             if self.plan.has(Effect::Continuous) {
                 self.effort.work.add(Effect::Continuous, 1);
@@ -117,6 +132,11 @@ impl World {
         }
         Some((pose_a, pose_b))
     }
+}
+
+/// Time up to which a body's motion in a step of `dt` is known [s].
+fn horizon(body: &Body, dt: f64) -> f64 {
+    if body.reach == 0.0 { dt } else { body.until }
 }
 
 /// Whether the pair is looked at: one moves, and one can be moved.

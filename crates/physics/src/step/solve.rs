@@ -18,7 +18,9 @@ use crate::body::Body;
 /// Passes that begin with nothing may end early, those that begin with loads must not: these may hold energy until the
 /// passes have come to terms. Stacks take a few hundred when something has changed, and then one or two a step.
 const PASSES: u32 = 40;
-const CONE_PASSES: u32 = 1000;
+const CONE_PASSES: u32 = 3000;
+/// Changes that fall from pass to pass by less than this ratio says are taken to fall so.
+const SLOWEST: f64 = 0.9999;
 
 /// What both halves of a stretch are answered with.
 #[derive(Clone, Copy, Debug)]
@@ -119,9 +121,13 @@ fn brake_group(
 }
 
 /// Passes over all rows until they come to terms; returns how many rows that took.
+///
+/// What is still missing follows from how fast the changes fall from pass to pass: under a heavy body on a light one they
+/// are small and fall slowly, and add up to much.
 fn settle(rows: &mut [Row], all: &mut [Mover], bodies: &[Body], halves: &Halves) -> u32 {
     let most = if halves.is_cone { CONE_PASSES } else { PASSES };
     let grips = halves.is_cone && halves.is_rough;
+    let (mut last, mut ratio) = (f64::INFINITY, 0.0);
     for pass in 0..most {
         let mut worst: f64 = 0.0;
         for row in rows.iter_mut() {
@@ -131,9 +137,12 @@ fn settle(rows: &mut [Row], all: &mut [Mover], bodies: &[Body], halves: &Halves)
                 None => row.press(all),
             });
         }
-        if worst <= halves.enough {
+        let now = (worst / last).min(SLOWEST);
+        let missing = worst * (now.max(ratio) / (1.0 - now.max(ratio))).max(1.0);
+        if missing <= halves.enough {
             return (pass + 1) * rows.len() as u32;
         }
+        (last, ratio) = (worst, now);
     }
     most * rows.len() as u32
 }

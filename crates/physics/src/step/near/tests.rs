@@ -160,7 +160,8 @@ fn no_pair_within_reach_is_missed_in_four_million_poses() {
             }
             world.awake.sort_unstable();
             for slot in world.awake.clone() {
-                world.bodies[slot as usize].look_ahead(DT);
+                world.bodies[slot as usize].until = DT;
+                world.bodies[slot as usize].look_ahead();
             }
             world.gather_due();
             let found = check(&world);
@@ -171,7 +172,7 @@ fn no_pair_within_reach_is_missed_in_four_million_poses() {
                 world.wait(pair);
             }
             for i in 0..world.awake.len() {
-                world.end_tick(world.awake[i] as usize, DT);
+                world.end_step(world.awake[i] as usize, DT);
             }
             world.dismiss();
         }
