@@ -1,7 +1,7 @@
 //! How fast is the detection, and how right? Against the targets, parry and the judge of the tests.
 //!
-//! `cargo bench -p physics --bench query` runs criterion's groups, and
-//! `cargo bench -p physics --bench query -- speed [PAIRS] [CLASSES] [POSES]` prints the table of ratios, in which all
+//! `cargo bench -p physics --features peers --bench query` runs criterion's groups, and
+//! `cargo bench -p physics --features peers --bench query -- speed [PAIRS] [CLASSES] [POSES]` prints the table of ratios, in which all
 //! three contenders take turns in every round: `-- speed cyl-ell,box near,deep 500`. A pair is chosen by any part of
 //! its name. `-- accuracy [PAIRS] [CLASSES] [POSES] [SEED]` judges the answers, on all cores, and prints the first wrong
 //! ones of each row; `-- case PAIR CLASS INDEX [SEED]` shows one of them in full. `-- dial` tables accuracy against the cap. `-- report` writes docs/detection.md.

@@ -1,67 +1,109 @@
-//! What a second of simulated alley costs. Divide the times by ten: each case runs a tenth of a second.
+//! What a second of simulated alley costs, and how many times as much it costs rapier3d.
 //!
-//! Budgets per simulated second on one core: shot 5 ms, standing awake 1 ms, asleep 0.05 ms. A whole game at 50 times
-//! real time may take 20 ms per second, everything included.
-#![allow(missing_docs, reason = "criterion's macros make undocumented items")]
+//! `cargo bench -p physics --features peers --bench step -- report [ROUNDS]` measures shots, racks that stand and that sleep, the
+//! slowest steps and many lanes against the targets, and writes docs/step.md. Without `report` criterion times a
+//! simulated second of each. `run MODEL RATE` is what runs under valgrind.
 
+#[path = "step/clock.rs"]
+mod clock;
+#[path = "lanes/growth.rs"]
+mod growth;
+#[path = "query/machine.rs"]
+mod machine;
+#[path = "step/measure.rs"]
+mod measure;
+#[path = "step/profile.rs"]
+mod profile;
+#[path = "step/rapier.rs"]
+mod rapier;
+#[path = "step/report.rs"]
+mod report;
+#[path = "step/rounds.rs"]
+mod rounds;
+#[path = "step/scenes.rs"]
+mod scenes;
 #[path = "../tests/support/mod.rs"]
 mod support;
 
-use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
-use physics::{Effect, Effects, Settings, World};
-use support::{alley, composite_pin, ellipsoid_pin, material, throw};
+use criterion::{BatchSize, Criterion};
+use rapier::{PEERS, Peer};
+use scenes::{MODELS, RATES, counted_steps, rack, shot};
 
-const TENTH: u32 = 9;
-/// Steps per second, those of a display.
-const RATE: f64 = 90.0;
+/// Rounds of a report in which the contenders take turns.
+const ROUNDS: usize = 11;
+/// The throw that criterion times, near the head pin's side.
+const THROW: u32 = 11;
 
-fn settings(sleeping: bool) -> Settings {
-    Settings {
-        step_hz: RATE,
-        effects: Effects::default().set(Effect::Sleeping, sleeping),
-        ..Settings::default()
+/// Criterion's own measurements: a simulated second from the release on, and of a rack that stands awake.
+fn groups() {
+    let mut criterion = Criterion::default().configure_from_args();
+    for rate in RATES {
+        let mut group = criterion.benchmark_group(format!("shot, {rate} steps/s"));
+        group.sample_size(20);
+        for (name, response) in MODELS {
+            let make = || shot(response, rate, THROW);
+            group.bench_function(name, |b| {
+                b.iter_batched(
+                    make,
+                    |mut world| {
+                        counted_steps(&mut world, rate);
+                        world
+                    },
+                    BatchSize::SmallInput,
+                )
+            });
+        }
+        for (name, pins) in PEERS {
+            let make = || Peer::shot(pins, rate, THROW);
+            group.bench_function(format!("peer, {name}"), |b| {
+                b.iter_batched(
+                    make,
+                    |mut peer| {
+                        peer.run(rate);
+                        peer
+                    },
+                    BatchSize::SmallInput,
+                )
+            });
+        }
+        group.finish();
+        let mut group = criterion.benchmark_group(format!("standing awake, {rate} steps/s"));
+        group.sample_size(20);
+        for (name, response) in MODELS {
+            let mut world = rack(response, rate, false);
+            group.bench_function(name, |b| b.iter(|| counted_steps(&mut world, rate)));
+        }
+        for (name, pins) in PEERS {
+            let mut peer = Peer::rack(pins, rate, false);
+            group.bench_function(format!("peer, {name}"), |b| b.iter(|| peer.run(rate)));
+        }
+        group.finish();
+    }
+    criterion.final_summary();
+}
+
+fn main() {
+    let words: Vec<String> = std::env::args()
+        .skip(1)
+        .filter(|word| word != "--bench")
+        .collect();
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    match words[..] {
+        ["run", model, rate] => {
+            profile::run(
+                model,
+                rate.parse()
+                    .expect("the rate is a number of steps per second"),
+            );
+        }
+        ["report"] => report::write(ROUNDS),
+        ["report", rounds] => {
+            report::write(
+                rounds
+                    .parse()
+                    .expect("the word after `report` counts rounds"),
+            );
+        }
+        _ => groups(),
     }
 }
-
-fn run(world: &mut World, steps: u32) {
-    for _ in 0..steps {
-        world.step();
-    }
-}
-
-fn bench(c: &mut Criterion, name: &str, world: &World) {
-    let step = |mut world: World| {
-        run(&mut world, TENTH);
-        world
-    };
-    c.bench_function(name, |b| {
-        b.iter_batched(|| world.clone(), step, BatchSize::SmallInput)
-    });
-}
-
-fn steps(c: &mut Criterion) {
-    let m = material(0.7, 0.7);
-    for (pins, name) in [
-        (composite_pin(), "composite"),
-        (ellipsoid_pin(), "ellipsoid"),
-    ] {
-        let (mut world, _) = alley(settings(true), &pins, m);
-        throw(&mut world, m, 0.05, 1.0, 8.0);
-        // The ball is on its way, the rack untouched; then the worst tenth of a second, and the heap it leaves.
-        run(&mut world, 8);
-        bench(c, &format!("{name}/shot, first tenth"), &world);
-        run(&mut world, 38);
-        bench(c, &format!("{name}/shot, half a second later"), &world);
-
-        let (mut world, _) = alley(settings(false), &pins, m);
-        run(&mut world, 90);
-        bench(c, &format!("{name}/standing awake"), &world);
-
-        let (mut world, _) = alley(settings(true), &pins, m);
-        run(&mut world, 90);
-        bench(c, &format!("{name}/asleep"), &world);
-    }
-}
-
-criterion_group!(benches, steps);
-criterion_main!(benches);

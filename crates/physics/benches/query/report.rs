@@ -10,7 +10,7 @@ use crate::{Filter, dial, machine, speed};
 const INTRODUCTION: &str = "\
 # Detection: how fast, how right
 
-Written by `cargo bench -p physics --bench query -- report [POSES TO TIME] [POSES TO JUDGE]`; do not edit by hand.
+Written by `cargo bench -p physics --features peers --bench query -- report [POSES TO TIME] [POSES TO JUDGE]`; do not edit by hand.
 
 ";
 

@@ -140,9 +140,10 @@ pub fn add_building(world: &mut World, m: Material) -> Vec<BodyId> {
     add_building_at(world, m, DVec3::ZERO)
 }
 
-fn add_building_at(world: &mut World, m: Material, at: DVec3) -> Vec<BodyId> {
+/// Opposite corners of the boxes that a building is made of [m].
+pub fn building_boxes() -> [(DVec3, DVec3); 12] {
     let v = DVec3::new;
-    let boxes = [
+    [
         (v(-0.52705, -0.3, -19.156), v(0.52705, 0.0, 0.0)),
         (v(-0.762, -0.3, -19.156), v(-0.52705, -0.0889, 0.0)),
         (v(0.52705, -0.3, -19.156), v(0.762, -0.0889, 0.0)),
@@ -155,8 +156,11 @@ fn add_building_at(world: &mut World, m: Material, at: DVec3) -> Vec<BodyId> {
         (v(1.0, -0.3, 0.0), v(1.2, 0.7, 1.0)),
         (v(-2.2, -0.3, 0.0), v(-2.0, 2.5, 4.6)),
         (v(2.0, -0.3, 0.0), v(2.2, 2.5, 4.6)),
-    ];
-    boxes
+    ]
+}
+
+fn add_building_at(world: &mut World, m: Material, at: DVec3) -> Vec<BodyId> {
+    building_boxes()
         .iter()
         .map(|(low, high)| world.add(block(m, *low + at, *high + at)))
         .collect()
