@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::cores::Core;
+use super::cores::{Circle, Core};
 use super::pair::{OF_B, Pair};
 use super::path::crossings;
 use super::search::{Goal, SAME, Search, State, Summit};
@@ -73,6 +73,9 @@ pub(super) fn from_nothing<A: Core, B: Core>(pair: &Pair<A, B>, goal: Goal) -> F
         };
     }
     let mut candidates = Candidates::new();
+    if first.s > -SHALLOW * pair.size {
+        candidates.collect_ridges(pair, &first);
+    }
     candidates.collect(pair);
     candidates.climb(pair, first, goal)
 }
@@ -166,6 +169,47 @@ impl Candidates {
             let n = between * (1.0 / between.length());
             self.put(pair, n, State::Free);
             self.put(pair, -n, State::Free);
+        }
+    }
+
+    /// The ends of the ridges through a summit at which the cores all but touch.
+    ///
+    /// Where a rim meets a corner or an apex s is a ridge, the arc of all normals square to the rim's tangent, and falls
+    /// from both of its ends to the middle: either may be the higher one. An end lies on a kink.
+    #[cold]
+    #[inline(never)]
+    fn collect_ridges<A: Core, B: Core>(&mut self, pair: &Pair<A, B>, summit: &Summit) {
+        let tips = pair.tips(summit.n);
+        let ends = [
+            (A::DISCS, pair.a.disc(tips.a.sides), summit.points.0),
+            (B::DISCS, pair.b.disc(tips.b.sides), summit.points.1),
+        ];
+        for (has, disc, point) in ends {
+            let mut tangent = disc.axis.cross(summit.n);
+            if tangent.length_squared() < 1e-12 {
+                tangent = disc.axis.cross(point - disc.centre);
+            }
+            let Some(axis) = tangent.try_normalize().filter(|_| has) else {
+                continue;
+            };
+            let ridge = Circle {
+                axis,
+                ..Circle::NONE
+            };
+            for i in (0..2 * OF_B).filter(|i| Pair::<A, B>::has_circle(*i)) {
+                // Along edges that coincide all ends are as high.
+                let Some((p, q)) =
+                    crossings(&ridge, &pair.circle(i)).filter(|_| pair.twins(i) == 0)
+                else {
+                    continue;
+                };
+                for n in [p, q] {
+                    // What an end gains in a search is of second order in the overlap.
+                    if pair.rough_gap(n) > summit.s - summit.s * summit.s / pair.size {
+                        self.put(pair, n, State::Circle(i));
+                    }
+                }
+            }
         }
     }
 

@@ -2,8 +2,8 @@
 
 use physics::query::Separation;
 
-use crate::judge::built::drawn;
-use crate::judge::cases::{self, Class, all_pairs, parametric_pairs};
+use crate::judge::built::{drawn, rims_and_corners};
+use crate::judge::cases::{self, Class, all_pairs, between, parametric_pairs};
 use crate::judge::oracle::{Field, Oracle};
 use crate::judge::verdict::{Verdict, angle, judge};
 use crate::support::Random;
@@ -73,6 +73,47 @@ fn deep_answers_are_the_shallowest_way_out() {
         24,
         |_, verdict, size| above(verdict.gap_error, 1e-4 * size).then_some("gap"),
     );
+}
+
+/// A rim that has come into a corner or an apex by a micrometre can be left at either end of an arc of normals, and s
+/// hardly tells the two apart.
+#[test]
+fn touching_rims_edges_and_apexes_are_left_the_shortest_way() {
+    let oracle = Oracle::new(800, 4);
+    let mut wrong = Wrong::default();
+    for pair in [
+        ("cyl", "cyl"),
+        ("cyl", "cone"),
+        ("cyl", "box"),
+        ("cone", "cone"),
+        ("cone", "box"),
+    ] {
+        for index in 0..160 {
+            let mut random = cases::random(SEED + index, pair, Class::Touching);
+            let (a, b) = (
+                cases::random_shape(pair.0, &mut random),
+                cases::random_shape(pair.1, &mut random),
+            );
+            let magnitude = 10f64.powf(between(&mut random, -7.0, -4.0));
+            let gap = magnitude.copysign(random.next());
+            let case = rims_and_corners(a, b, gap, &mut random);
+            let found = answer(&case);
+            let best = if gap > 0.0 {
+                gap
+            } else {
+                oracle.best(&case).gap
+            };
+            let short = (best - found.gap) / case.size();
+            wrong.unless(short < 1e-9 || found.capped, || {
+                format!("{pair:?} {index} {SEED}: {gap:.3e}, short by {short:.1e}: {found:?}")
+            });
+            let over = found.gap - case.gap_along(found.normal);
+            wrong.unless(over < 1e-14, || {
+                format!("{pair:?} {index} {SEED}: claims {over:.1e} more than it proves")
+            });
+        }
+    }
+    wrong.end();
 }
 
 /// Two polytopes of many corners may need more new normals than the cap allows; then they say so.

@@ -79,7 +79,7 @@ impl<A: Core, B: Core> Search<'_, A, B> {
         } else if let Some(t) = self.saddle_step(k, det, g, u, w) {
             t
         } else {
-            uphill(k, g, pair.size)
+            uphill(k, g, pair.size, s)
         };
         let mut step = u * t.0 + w * t.1;
         if let Some((_, away)) = self.left
@@ -237,7 +237,7 @@ impl<A: Core, B: Core> Search<'_, A, B> {
 
 /// A step where s is not concave: Newton's along the direction of positive curvature, a stride along the other.
 #[inline(never)]
-fn uphill(k: [f64; 3], g: (f64, f64), size: f64) -> (f64, f64) {
+fn uphill(k: [f64; 3], g: (f64, f64), size: f64, s: f64) -> (f64, f64) {
     let (mean, spread) = (0.5 * (k[0] + k[2]), 0.5 * (k[0] - k[2]));
     let root = (spread * spread + k[1] * k[1]).sqrt();
     let largest = mean + root;
@@ -254,10 +254,11 @@ fn uphill(k: [f64; 3], g: (f64, f64), size: f64) -> (f64, f64) {
     };
     let (g_bent, g_other) = (x * g.0 + y * g.1, x * g.1 - y * g.0);
     let (bent, other) = if largest > 0.02 * size {
-        (
-            (g_bent / largest).clamp(-STRIDE, STRIDE),
-            STRIDE.copysign(g_other),
-        )
+        let bent = (g_bent / largest).clamp(-STRIDE, STRIDE);
+        // Where the surfaces all but touch, s is a sharp ridge: a stride along it from beside it only falls.
+        let beside = s > -TOUCHING * size && 5.0 * bent * g_bent > STRIDE * g_other.abs();
+        let stride = if beside { 0.0 } else { STRIDE };
+        (bent, stride.copysign(g_other))
     } else {
         let slope = (g_bent * g_bent + g_other * g_other).sqrt();
         if slope > 1e-12 * size {

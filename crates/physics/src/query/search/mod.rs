@@ -16,7 +16,7 @@ use super::cores::Core;
 use super::pair::{OF_B, Pair, Tips};
 
 /// Offset across n that leaves the interval of an answer narrow enough, in units of the pair's size.
-const NARROW: f64 = 1e-8;
+const NARROW: f64 = 5e-10;
 /// Closest points are lined up when this far apart across n, in units of the pair's size.
 const LINED_UP: f64 = 1e-11;
 /// Cosine of the angle to a known summit within which one look half way decides whether this is its slope: 0.2 rad.

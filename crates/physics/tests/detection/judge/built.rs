@@ -82,6 +82,28 @@ pub fn put_together(a: Known, b: Known, gap: f64, random: &mut Random) -> Built 
     }
 }
 
+/// Puts rims, apexes and corners `gap` apart [m], negative for into each other: the farthest points along one random
+/// normal, which no face is square to. For frusta and boxes.
+pub fn rims_and_corners(a: Known, b: Known, gap: f64, random: &mut Random) -> Case {
+    let pose_a = Pose::new(direction(random) * 3.0, rotation(random));
+    let turn = rotation(random);
+    let normal = direction(random);
+    let farthest = |shape: &Known, n: DVec3| match *shape {
+        Known::Frustum(bottom, top, h) => rim_point(bottom, top, h, n),
+        Known::Cuboid(h) => h * n.signum(),
+        _ => panic!("{shape:?} has neither rims nor corners"),
+    };
+    let from = pose_a.transform_point(farthest(&a, pose_a.rotation.conjugate() * normal));
+    let to = turn * farthest(&b, turn.conjugate() * -normal);
+    let pose_b = Pose::new(from + normal * gap - to, turn);
+    Case {
+        a,
+        pose_a,
+        b,
+        pose_b,
+    }
+}
+
 /// An outward unit normal and a point that is farthest along it, in the shape's frame.
 pub fn surface_point(shape: &Known, random: &mut Random) -> (DVec3, DVec3) {
     let n = direction(random);
@@ -130,12 +152,7 @@ fn on_truncated(a: DVec3, cut: f64, n: DVec3, random: &mut Random) -> (DVec3, DV
 fn on_frustum(bottom: f64, top: f64, h: f64, n: DVec3, random: &mut Random) -> (DVec3, DVec3) {
     let choice = between(random, 0.0, 1.0);
     if choice < 0.4 {
-        // A rim, or the apex.
-        let across = n.x.hypot(n.z);
-        let out = DVec3::new(n.x / across, 0.0, n.z / across);
-        let low = out * bottom - DVec3::Y * h;
-        let high = out * top + DVec3::Y * h;
-        (n, if n.dot(low) > n.dot(high) { low } else { high })
+        (n, rim_point(bottom, top, h, n))
     } else if choice < 0.7 {
         let out = around(random);
         let low = out * bottom - DVec3::Y * h;
@@ -149,6 +166,15 @@ fn on_frustum(bottom: f64, top: f64, h: f64, n: DVec3, random: &mut Random) -> (
         let point = around(random) * radius * inward + DVec3::Y * y * h;
         (DVec3::Y * y, point)
     }
+}
+
+/// The farthest point of a frustum along a normal that is not its axis: of a rim, or the apex.
+fn rim_point(bottom: f64, top: f64, h: f64, n: DVec3) -> DVec3 {
+    let across = n.x.hypot(n.z);
+    let out = DVec3::new(n.x / across, 0.0, n.z / across);
+    let low = out * bottom - DVec3::Y * h;
+    let high = out * top + DVec3::Y * h;
+    if n.dot(low) > n.dot(high) { low } else { high }
 }
 
 fn on_cuboid(h: DVec3, n: DVec3, random: &mut Random) -> (DVec3, DVec3) {
