@@ -3,7 +3,7 @@
 use std::array;
 use std::time::Instant;
 
-use physics::World;
+use physics::{Effort, Response, World};
 
 use crate::rapier::{PEERS, Peer};
 use crate::rounds::{Times, percentile, seconds};
@@ -139,6 +139,8 @@ pub struct Tail {
     pub slow: f64,
     /// The longest.
     pub longest: f64,
+    /// Mean time of each simulated second of a throw [us].
+    pub seconds: [f64; DURATION as usize],
 }
 
 /// Times of the steps of all throws, for each rate, of each model and each of the peers.
@@ -159,7 +161,7 @@ pub fn tails() -> Vec<(u32, &'static str, Tail)> {
 
 fn tail<T>(rate: u32, make: impl Fn(u32) -> T, step: impl Fn(&mut T)) -> Tail {
     let steps = (rate * DURATION) as usize;
-    let mut all = Vec::new();
+    let (mut all, mut seconds) = (Vec::new(), [0.0; DURATION as usize]);
     for throw in 0..THROWS {
         let mut least = vec![f64::INFINITY; steps];
         for _ in 0..REPEATS {
@@ -170,11 +172,31 @@ fn tail<T>(rate: u32, make: impl Fn(u32) -> T, step: impl Fn(&mut T)) -> Tail {
                 *least = least.min(1e6 * start.elapsed().as_secs_f64());
             }
         }
+        for (sum, second) in seconds.iter_mut().zip(least.chunks(rate as usize)) {
+            *sum += second.iter().sum::<f64>() / f64::from(THROWS);
+        }
         all.extend(least);
     }
     Tail {
         median: percentile(&mut all, 0.5),
         slow: percentile(&mut all, 0.99),
         longest: percentile(&mut all, 1.0),
+        seconds,
     }
+}
+
+/// Work of a model's throws at a rate, all together.
+pub fn effort(response: Response, rate: u32) -> Effort {
+    let mut sum = Effort::default();
+    for throw in 0..THROWS {
+        let mut world = shot(response, rate, throw);
+        counted_steps(&mut world, rate * DURATION);
+        let effort = world.effort();
+        sum.stretches += effort.stretches;
+        sum.events += effort.events;
+        sum.impulses += effort.impulses;
+        sum.looks += effort.looks;
+        sum.passes += effort.passes;
+    }
+    sum
 }

@@ -203,6 +203,41 @@ fn add_tails(text: &mut String, tails: &[(u32, &'static str, Tail)]) {
     }
 }
 
+/// When in a throw the time goes, and what the work is: both per simulated second.
+fn add_work(text: &mut String, tails: &[(u32, &'static str, Tail)]) {
+    text.push_str("\n## When a throw's time goes, and into what\n\n");
+    text.push_str("Of the same steps: milliseconds in each second of a throw; the ball hits after a quarter of one.\n\n");
+    text.push_str("| steps/s | | 1st | 2nd | 3rd | 4th |\n|--:|---|--:|--:|--:|--:|\n");
+    for (rate, name, tail) in tails {
+        let _ = write!(text, "| {rate} | {name} |");
+        for second in tail.seconds {
+            let _ = write!(text, " {:.2} |", 1e-3 * second);
+        }
+        text.push('\n');
+    }
+    text.push_str(
+        "\nCounts per simulated second of a throw (`World::effort`): stretches that islands were carried through, answers of single\n\
+        lasting contacts in them, times at which a pair was looked at, contacts that came about, impulses that answered them.\n\n",
+    );
+    text.push_str("| steps/s | model | stretches | passes | looks | events | impulses |\n");
+    text.push_str("|--:|---|--:|--:|--:|--:|--:|\n");
+    for rate in RATES {
+        for (name, response) in MODELS {
+            let effort = measure::effort(response, rate);
+            let each = |count: u64| count / u64::from(THROWS * DURATION);
+            let _ = writeln!(
+                text,
+                "| {rate} | {name} | {} | {} | {} | {} | {} |",
+                each(effort.stretches),
+                each(effort.passes),
+                each(effort.looks),
+                each(effort.events),
+                each(effort.impulses)
+            );
+        }
+    }
+}
+
 fn add_growth(text: &mut String, growth: &Growth) {
     let exponent = growth.exponent();
     let free = |lanes: usize| growth.one_awake[lanes].1;
@@ -236,7 +271,9 @@ pub fn write(rounds: usize) {
     add_standing(&mut text, &measure::standing(rounds));
     add_asleep(&mut text, &measure::asleep(rounds));
     println!("standing, asleep: done");
-    add_tails(&mut text, &measure::tails());
+    let tails = measure::tails();
+    add_tails(&mut text, &tails);
+    add_work(&mut text, &tails);
     println!("slowest steps: done");
     add_growth(&mut text, &Growth::measure());
     println!("lanes: done");
