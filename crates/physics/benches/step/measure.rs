@@ -7,7 +7,7 @@ use physics::{Effort, Response, World};
 
 use crate::rapier::{PEERS, Peer};
 use crate::rounds::{Times, percentile, seconds};
-use crate::scenes::{DURATION, MODELS, RATES, THROWS, counted_steps, fallen, rack, shot};
+use crate::scenes::{DURATION, MODELS, RATES, THROWS, awake, counted_steps, fallen, rack, shot};
 
 /// Simulated time of a turn in which pins stand awake [s].
 const STANDING: u32 = 5;
@@ -19,6 +19,22 @@ const SETTLING: u32 = 5;
 /// How often a step is timed; the least counts.
 const REPEATS: usize = 5;
 
+/// How throws end, counted together.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct End {
+    /// Pins that fell.
+    pub fallen: usize,
+    /// Bodies that are not asleep.
+    pub awake: usize,
+}
+
+impl End {
+    fn add(&mut self, fallen: usize, awake: usize) {
+        self.fallen += fallen;
+        self.awake += awake;
+    }
+}
+
 /// Times per simulated second, by rate and model; and the peers', by rate and pin.
 #[derive(Default)]
 pub struct Contest {
@@ -26,10 +42,10 @@ pub struct Contest {
     pub ours: [[Times; MODELS.len()]; RATES.len()],
     /// The peers'.
     pub peer: [[Times; PEERS.len()]; RATES.len()],
-    /// Pins that fell in all throws of a round.
-    pub fallen_ours: [[usize; MODELS.len()]; RATES.len()],
+    /// What all throws of a round end with.
+    pub ends_ours: [[End; MODELS.len()]; RATES.len()],
     /// The peers'.
-    pub fallen_peer: [[usize; PEERS.len()]; RATES.len()],
+    pub ends_peer: [[End; PEERS.len()]; RATES.len()],
 }
 
 /// All throws, throw by throw; worlds are made before the clock runs.
@@ -46,14 +62,14 @@ pub fn shots(rounds: usize) -> Contest {
                     let mut world = shot(response, rate, throw);
                     ours[i][j] += seconds(|| counted_steps(&mut world, steps));
                     if round == 0 {
-                        contest.fallen_ours[i][j] += fallen(&world);
+                        contest.ends_ours[i][j].add(fallen(&world), awake(&world));
                     }
                 }
                 for (j, (_, pins)) in PEERS.into_iter().enumerate() {
                     let mut peer = Peer::shot(pins, rate, throw);
                     peers[i][j] += seconds(|| peer.run(steps));
                     if round == 0 {
-                        contest.fallen_peer[i][j] += peer.fallen();
+                        contest.ends_peer[i][j].add(peer.fallen(), peer.awake());
                     }
                 }
             }

@@ -160,4 +160,11 @@ impl Peer {
         };
         self.pins.iter().filter(is_down).count()
     }
+
+    /// Number of bodies that move by themselves and do not sleep.
+    pub fn awake(&self) -> usize {
+        let bodies = self.world.bodies.iter();
+        let awake = bodies.filter(|(_, body)| body.is_dynamic() && !body.is_sleeping());
+        awake.count()
+    }
 }

@@ -102,19 +102,28 @@ fn add_contest(text: &mut String, contest: &Contest, target: f64) {
     }
 }
 
-/// Pins that all throws of a round have felled, a sentence.
-fn add_felled(text: &mut String, contest: &Contest) {
-    let _ = write!(text, "\nPins felled in all throws, of {}:", 10 * THROWS);
+/// How the throws of a round end: pins that fell, bodies that are awake.
+fn add_ends(text: &mut String, contest: &Contest) {
+    let pins = 10 * THROWS;
+    let bodies = 11 * THROWS;
+    let _ = writeln!(
+        text,
+        "\nAt the end of the {THROWS} throws: pins felled of {pins}, bodies awake of {bodies}.\n"
+    );
+    text.push_str("| steps/s | | felled | awake |\n|--:|---|--:|--:|\n");
     for (i, rate) in RATES.into_iter().enumerate() {
-        let ours = MODELS.into_iter().zip(contest.fallen_ours[i]);
-        let ours = ours.map(|((name, _), felled)| format!("{name} {felled}"));
-        let peers = PEERS.into_iter().zip(contest.fallen_peer[i]);
-        let peers = peers.map(|((name, _), felled)| format!("{name} {felled}"));
-        let all: Vec<String> = ours.chain(peers).collect();
-        let end = if i + 1 == RATES.len() { "." } else { ";" };
-        let _ = write!(text, " at {rate} steps/s {}{end}", all.join(", "));
+        let ours = MODELS
+            .map(|(name, _)| name)
+            .into_iter()
+            .zip(contest.ends_ours[i]);
+        let peers = PEERS
+            .map(|(name, _)| name)
+            .into_iter()
+            .zip(contest.ends_peer[i]);
+        for (name, end) in ours.chain(peers) {
+            let _ = writeln!(text, "| {rate} | {name} | {} | {} |", end.fallen, end.awake);
+        }
     }
-    text.push('\n');
 }
 
 fn add_shots(text: &mut String, contest: &Contest) {
@@ -123,7 +132,7 @@ fn add_shots(text: &mut String, contest: &Contest) {
         "## A shot\n\nTarget: {SHOT_TARGET} times as fast as the peer, stretch {SHOT_STRETCH}.\n"
     );
     add_contest(text, contest, SHOT_TARGET);
-    add_felled(text, contest);
+    add_ends(text, contest);
     add_throws(text, contest);
 }
 

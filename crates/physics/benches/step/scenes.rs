@@ -1,7 +1,7 @@
 //! Our side of the comparison: a rack, a ball that rolls towards it, under each model.
 
 use glam::DVec3;
-use physics::{Effect, Effects, PairContact, Response, Settings, World};
+use physics::{Effect, Effects, Motion, PairContact, Response, Settings, World};
 
 use crate::support::{BALL_RADIUS, alley, composite_pin, material, throw};
 
@@ -69,9 +69,18 @@ pub fn fallen(world: &World) -> usize {
     let pins = world.ids().filter(|id| {
         let mass = world.body(*id).mass().mass;
         let body = world.body(*id);
-        body.motion() == physics::Motion::Dynamic
+        body.motion() == Motion::Dynamic
             && mass < 2.0
             && is_down(body.pose().position, body.pose().rotation * DVec3::Y)
     });
     pins.count()
+}
+
+/// Number of bodies that move by themselves and are not asleep.
+pub fn awake(world: &World) -> usize {
+    let awake = world.ids().filter(|id| {
+        let body = world.body(*id);
+        body.motion() == Motion::Dynamic && !body.is_asleep()
+    });
+    awake.count()
 }
