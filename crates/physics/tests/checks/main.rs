@@ -30,6 +30,8 @@ const CHECKS: &[(&str, Measure)] = &[
     ("A7-fall", pin::a7_fall),
     ("A8-height", pin::a8_height),
     ("A8-distance", pin::a8_distance),
+    ("A8-composite-height", pin::a8_composite_height),
+    ("A8-composite-distance", pin::a8_composite_distance),
     ("A9-offset", || rack::a9(0.065)),
     ("A9-board", || rack::a9(0.0676)),
     ("A11-entry", lane::a11_entry),

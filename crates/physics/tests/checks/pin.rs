@@ -188,20 +188,20 @@ fn belly() -> Shape {
     Shape::cloud(&points).expect("all points are finite")
 }
 
-/// Where a ball on the lane touches an upright pin, and its distance from the pin's axis then.
-fn touch() -> (Separation, f64) {
-    let (pin, ball) = (
-        belly(),
-        Shape::sphere(BALL_RADIUS).expect("a ball has a radius"),
-    );
+/// The belly of the game's composite pin, upright on the lane: `pin.parts` of config/default.toml.
+fn composite_belly() -> (Shape, Pose) {
+    let (height, radius, half_length) = (0.11796, 0.06033, 0.10745);
+    let belly = Shape::ellipsoid(DVec3::new(radius, half_length, radius));
+    let up = Pose::from_position(DVec3::Y * height);
+    (belly.expect("it has a size"), up)
+}
+
+/// Where a ball on the lane touches an upright pin's belly, and its distance from the pin's axis then.
+fn touch((belly, pose): (Shape, Pose)) -> (Separation, f64) {
+    let ball = Shape::sphere(BALL_RADIUS).expect("a ball has a radius");
     let ask = |x: f64| {
         let at = Pose::from_position(DVec3::new(x, BALL_RADIUS, 0.0));
-        separation(
-            (&ball, &at),
-            (&pin, &Pose::IDENTITY),
-            None,
-            Limits::default(),
-        )
+        separation((&ball, &at), (&belly, &pose), None, Limits::default())
     };
     let mut x = 0.2;
     for _ in 0..50 {
@@ -210,14 +210,28 @@ fn touch() -> (Separation, f64) {
     (ask(x), x)
 }
 
-pub fn a8_height() -> Vec<f64> {
-    let (touch, _) = touch();
+fn height((touch, _): (Separation, f64)) -> Vec<f64> {
     vec![1e3 * touch.point_a.y]
 }
 
-pub fn a8_distance() -> Vec<f64> {
-    let (_, x) = touch();
+fn distance((_, x): (Separation, f64)) -> Vec<f64> {
     vec![1e3 * x]
+}
+
+pub fn a8_height() -> Vec<f64> {
+    height(touch((belly(), Pose::IDENTITY)))
+}
+
+pub fn a8_distance() -> Vec<f64> {
+    distance(touch((belly(), Pose::IDENTITY)))
+}
+
+pub fn a8_composite_height() -> Vec<f64> {
+    height(touch(composite_belly()))
+}
+
+pub fn a8_composite_distance() -> Vec<f64> {
+    distance(touch(composite_belly()))
 }
 
 /// Slices of cones between neighbouring heights of the profile.
