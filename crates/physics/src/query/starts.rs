@@ -26,6 +26,7 @@ pub(super) struct Found {
     pub local: bool,
 }
 
+const DIAGONAL: f64 = std::f64::consts::FRAC_1_SQRT_2;
 /// Cosine of the angle from the start within which a maximum of s is taken for the one that was meant: 0.1 rad.
 const STAYED: f64 = 0.995;
 /// Overlap so shallow that any maximum of s will do, in units of the pair's size.
@@ -157,12 +158,28 @@ impl Candidates {
                 self.put_crossings(pair, i, j);
             }
         }
+        self.collect_between(pair, &ends_a, &ends_b);
+    }
+
+    /// The line of centres, thin directions and what lies between two ends' axes.
+    fn collect_between<A: Core, B: Core>(
+        &mut self,
+        pair: &Pair<A, B>,
+        ends_a: &[Option<DVec3>; 2],
+        ends_b: &[Option<DVec3>; 2],
+    ) {
         if let Some(n) = pair.offset.try_normalize() {
             self.put(pair, n, State::Free);
         }
-        if let Some(n) = thinnest(pair) {
+        let thin = [pair.a.thin_axis(), pair.b.thin_axis()];
+        if thin.contains(&None)
+            && let Some(n) = thinnest(pair)
+        {
             let n = if n.dot(pair.offset) >= 0.0 { n } else { -n };
             self.put(pair, n, State::Free);
+        }
+        for axis in thin.into_iter().flatten() {
+            self.put_about(pair, axis, ends_a, ends_b);
         }
         if let (Some(a), Some(b)) = (ends_a[1].or(ends_a[0]), ends_b[1].or(ends_b[0])) {
             let between = a + b * 1.0_f64.copysign(a.dot(b));
@@ -209,6 +226,60 @@ impl Candidates {
                         self.put(pair, n, State::Circle(i));
                     }
                 }
+            }
+        }
+    }
+
+    /// Where an ellipsoid's shortest axis leads: s has a maximum near it, and several around a mantle or a cut's rim.
+    fn put_about<A: Core, B: Core>(
+        &mut self,
+        pair: &Pair<A, B>,
+        axis: DVec3,
+        ends_a: &[Option<DVec3>; 2],
+        ends_b: &[Option<DVec3>; 2],
+    ) {
+        let mut has_mantle = false;
+        for (discs, mantle, ends) in [(A::DISCS, 0, ends_a), (B::DISCS, OF_B, ends_b)] {
+            if discs && Pair::<A, B>::has_circle(mantle) {
+                has_mantle = true;
+                self.put_around(pair, &pair.circle(mantle), axis, State::Circle(mantle));
+            } else if let Some(axis_of_cut) = ends[0].or(ends[1]) {
+                let rim = Circle {
+                    axis: axis_of_cut,
+                    height: DIAGONAL,
+                    radius: DIAGONAL,
+                    jump: 0.0,
+                };
+                self.put_around(pair, &rim, axis, State::Free);
+            }
+        }
+        if !has_mantle {
+            self.put(pair, axis, State::Free);
+            self.put(pair, -axis, State::Free);
+        }
+    }
+
+    /// Those of eight normals around a circle, the nearest to `from` the first, that are higher than their neighbours.
+    fn put_around<A: Core, B: Core>(
+        &mut self,
+        pair: &Pair<A, B>,
+        circle: &Circle,
+        from: DVec3,
+        state: State,
+    ) {
+        let Some(first) = circle.nearest(from) else {
+            return;
+        };
+        let middle = circle.axis * circle.height;
+        let out = first - middle;
+        let ahead = circle.axis.cross(out);
+        let (c, d) = (out * DIAGONAL, ahead * DIAGONAL);
+        let around = [out, c + d, ahead, d - c, -out, -c - d, -ahead, c - d].map(|v| middle + v);
+        let heights = around.map(|n| pair.rough_gap(n));
+        for (k, n) in around.into_iter().enumerate() {
+            let (before, after) = (heights[(k + 7) % 8], heights[(k + 1) % 8]);
+            if heights[k] >= before && heights[k] > after {
+                self.put(pair, n, state);
             }
         }
     }

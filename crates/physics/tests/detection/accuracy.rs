@@ -116,6 +116,33 @@ fn touching_rims_edges_and_apexes_are_left_the_shortest_way() {
     wrong.end();
 }
 
+/// Overlaps whose shallowest way out no kink and no line of centres leads to, found among 260,000 by the benchmark.
+#[test]
+fn deep_ellipsoids_are_left_by_the_side_that_hides() {
+    let oracle = Oracle::new(1200, 5);
+    let mut wrong = Wrong::default();
+    for (pair, index) in [
+        (("cyl", "ell"), 1304),
+        (("cone", "ell"), 1717),
+        (("ell", "ell"), 1674),
+        (("ell", "box"), 3202),
+        (("trunc", "caps"), 1869),
+        (("trunc", "cone"), 3150),
+        (("trunc", "cone"), 3701),
+        (("trunc", "frus"), 3032),
+        (("trunc", "box"), 2914),
+        (("trunc", "trunc"), 310),
+    ] {
+        let (case, truth) = drawn(pair, Class::Deep, 20_261_122, index);
+        let found = answer(&case);
+        let verdict = judge(&case, &found, truth, &oracle);
+        wrong.unless(verdict.gap_error < 1e-9 * case.size(), || {
+            format!("{pair:?} {index}: {found:?} {verdict:?}")
+        });
+    }
+    wrong.end();
+}
+
 /// Two polytopes of many corners may need more new normals than the cap allows; then they say so.
 #[test]
 fn deep_answers_of_clouds_are_the_shallowest_way_out_or_say_that_they_ended_early() {

@@ -8,6 +8,8 @@ use super::{Core, Symmetric, Tip};
 pub(in crate::query) struct EllipsoidCore {
     square: Symmetric,
     size: f64,
+    rotation: DMat3,
+    semi: DVec3,
 }
 
 impl EllipsoidCore {
@@ -15,6 +17,8 @@ impl EllipsoidCore {
         EllipsoidCore {
             square: Symmetric::turned(rotation, semi * semi),
             size: semi.max_element(),
+            rotation: *rotation,
+            semi,
         }
     }
 }
@@ -60,6 +64,10 @@ impl Core for EllipsoidCore {
     fn curvature_along(&self, _: DVec3, tip: &Tip, e: DVec3) -> f64 {
         let q = tip.point.dot(e);
         (self.square.times(e).dot(e) - q * q) * tip.inverse
+    }
+
+    fn thin_axis(&self) -> Option<DVec3> {
+        Some(self.rotation.col(self.semi.min_position()))
     }
 
     fn extents(&self) -> Symmetric {

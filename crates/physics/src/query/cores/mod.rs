@@ -209,6 +209,11 @@ pub(super) trait Core {
         self.tip(n).point
     }
 
+    /// Shortest axis of an ellipsoid: s tends to have a maximum near it, and no kink leads there.
+    fn thin_axis(&self) -> Option<DVec3> {
+        None
+    }
+
     /// Ellipsoid-like matrix of the core's extents [m2], from which the first normal is guessed.
     fn extents(&self) -> Symmetric;
 

@@ -107,6 +107,12 @@ impl Core for TruncatedCore {
         centre + x * px + z * pz
     }
 
+    /// Across the axis: at the end that is not cut s is looked at from the middle as it is.
+    fn thin_axis(&self) -> Option<DVec3> {
+        let [(x, a), (z, b)] = self.axes;
+        Some(if a < b { x } else { z })
+    }
+
     fn extents(&self) -> Symmetric {
         self.square
     }
