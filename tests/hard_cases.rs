@@ -21,7 +21,6 @@ const KNOWN_FAILURES: &[&str] = &[
     "energy-never-rises",
     "all-pairs",
     "needles-and-plates",
-    "certificates",
 ];
 
 #[test]
