@@ -1,5 +1,6 @@
 //! The command line: what a person may ask for, and what is refused before anything starts.
 
+mod accuracy;
 mod throw;
 
 use std::path::PathBuf;
@@ -7,6 +8,7 @@ use std::path::PathBuf;
 use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 
+pub use accuracy::AccuracyArguments;
 pub use throw::{
     ModelChoice, PinNumbers, ShapeChoice, ShotArguments, Span, StrikeMapArguments, ThrowArguments,
 };
@@ -124,6 +126,12 @@ pub enum Command {
     /// every effect how often it acts in a step, its share of the step's time, and the time with and
     /// without it.
     Effects(EffectsArguments),
+    /// Show what accuracy costs in time, dial by dial.
+    ///
+    /// Prints a table per dial (iteration cap, shape, step, solver, response, precision, four public scenes) and writes
+    /// accuracy.csv, a figure per dial and one of all as SVG and PNG: error against time, the default and the knee marked.
+    /// docs/accuracy.md reads them.
+    Accuracy(AccuracyArguments),
 }
 
 /// Who or what bowls.

@@ -16,7 +16,7 @@ mod laws;
 mod oracle;
 mod resting;
 mod rocking;
-mod scene;
+pub(crate) mod scene;
 mod shots;
 mod stacks;
 mod swarm;

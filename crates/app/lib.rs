@@ -1,8 +1,9 @@
 //! The `bowling` program: who bowls, what is recorded, what is drawn.
 //!
 //! Entry points: [`run`] reads the command line; [`play`], [`replay`], [`query`], [`hard_cases`],
-//! [`shot`], [`strike_map`] and [`effects`](mod@effects) are the commands; a [`session::Session`] takes one input per displayed frame from any device.
+//! [`shot`], [`strike_map`], [`effects`](mod@effects) and [`accuracy`](mod@accuracy) are the commands; a [`session::Session`] takes one input per displayed frame from any device.
 
+pub mod accuracy;
 pub mod args;
 pub mod boundary;
 pub mod choose;
@@ -78,6 +79,9 @@ fn obey(arguments: &Arguments) -> Result<()> {
         Some(Command::Shot(shot)) => shot::shot(shot, &root::find(arguments.root.as_deref())?),
         Some(Command::Effects(effects)) => {
             effects::effects(effects, &root::find(arguments.root.as_deref())?)
+        }
+        Some(Command::Accuracy(accuracy)) => {
+            accuracy::accuracy(accuracy, &root::find(arguments.root.as_deref())?)
         }
         Some(Command::StrikeMap(map)) => {
             strike_map::strike_map(map, &root::find(arguments.root.as_deref())?)

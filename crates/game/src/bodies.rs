@@ -34,6 +34,7 @@ pub(crate) fn world(config: &Config) -> Result<World, SettingsError> {
         rolling_resistance_m: physics.rolling_resistance_m,
         air_density_kgpm3: physics.air_density_kgpm3,
         contact: config.coulomb.other.contact(),
+        ..Settings::default()
     })?;
     for (_, a, b, pair) in config.coulomb.pairs() {
         world.set_pair(a, b, pair.contact())?;

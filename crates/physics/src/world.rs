@@ -27,6 +27,9 @@ pub struct Settings {
     pub response: Response,
     /// Largest number of new normals per search (§2.1); 20 in the paper's experiment.
     pub iteration_cap: u32,
+    /// Largest number of sweeps over a group of lasting contacts under `Response::Coulomb`, which ends earlier where it has
+    /// come to terms; the paper's laws, whose friction is not corrected, end at 40 whatever this says.
+    pub sweep_cap: u32,
     /// Contact time after which a lasting contact has taken the share `friction_rate` of the slip [s].
     pub friction_reference_s: f64,
     /// What the steps compute; everything else executes nothing.
@@ -46,6 +49,7 @@ impl Default for Settings {
             gravity: DVec3::new(0.0, -9.81, 0.0),
             response: Response::Guarded,
             iteration_cap: 20,
+            sweep_cap: 3000,
             friction_reference_s: 1.0 / 60.0,
             effects: Effects::default(),
             rolling_resistance_m: 0.0,
@@ -70,6 +74,9 @@ pub enum SettingsError {
     /// At least one iteration is needed.
     #[error("iteration_cap must be at least 1")]
     IterationCap,
+    /// At least one sweep is needed.
+    #[error("sweep_cap must be at least 1")]
+    SweepCap,
     /// The reference interval must be positive and finite.
     #[error("friction_reference_s must be a positive time in seconds, not {0}")]
     FrictionReference(f64),
@@ -166,6 +173,9 @@ impl World {
         }
         if settings.iteration_cap == 0 {
             return Err(SettingsError::IterationCap);
+        }
+        if settings.sweep_cap == 0 {
+            return Err(SettingsError::SweepCap);
         }
         if !positive(settings.friction_reference_s) {
             return Err(SettingsError::FrictionReference(

@@ -82,6 +82,7 @@ impl World {
             is_rough: self.plan.has(Effect::Friction),
             rolling: self.plan.rolling,
             enough: 1e-4 * kick.length() + 1e-15,
+            cone_passes: self.settings.sweep_cap,
         };
         let mut room = std::mem::take(&mut self.scratch.carry);
         room.number(self.bodies.len(), carried, touches);

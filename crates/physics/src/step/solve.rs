@@ -13,12 +13,11 @@ use super::scratch::Carry;
 use super::touch::Touch;
 use crate::body::Body;
 
-/// Most passes over the normals of a group, and over normals and friction in a cone.
+/// Most passes over the normals of a group; over normals and friction in a cone the settings say.
 ///
 /// Passes that begin with nothing may end early, those that begin with loads must not: these may hold energy until the
 /// passes have come to terms. Stacks take a few hundred when something has changed, and then one or two a step.
 const PASSES: u32 = 40;
-const CONE_PASSES: u32 = 3000;
 /// Changes that fall from pass to pass by less than this ratio says are taken to fall so.
 const SLOWEST: f64 = 0.9999;
 
@@ -34,6 +33,8 @@ pub(crate) struct Halves {
     pub rolling: Option<f64>,
     /// Change of a velocity that ends the passes [m/s].
     pub enough: f64,
+    /// Most passes in a cone.
+    pub cone_passes: u32,
 }
 
 /// What the answer of a half took.
@@ -125,7 +126,11 @@ fn brake_group(
 /// What is still missing follows from how fast the changes fall from pass to pass: under a heavy body on a light one they
 /// are small and fall slowly, and add up to much.
 fn settle(rows: &mut [Row], all: &mut [Mover], bodies: &[Body], halves: &Halves) -> u32 {
-    let most = if halves.is_cone { CONE_PASSES } else { PASSES };
+    let most = if halves.is_cone {
+        halves.cone_passes
+    } else {
+        PASSES
+    };
     let grips = halves.is_cone && halves.is_rough;
     let (mut last, mut ratio) = (f64::INFINITY, 0.0);
     for pass in 0..most {

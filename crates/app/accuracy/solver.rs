@@ -1,0 +1,123 @@
+//! Sweeps of the solver over lasting contacts, under Coulomb's law, with what is hardest for it: towers, heavy on light.
+
+use glam::DVec3;
+use physics::{BodyId, Response, Settings, World};
+
+use super::budget::Budget;
+use super::report::{Line, Measure, Point, Reference, Report};
+use super::timing::{Task, in_turns};
+use crate::hard_cases::scene::{Setup, run};
+
+pub const NAME: &str = "solver";
+
+const CAPS: [u32; 10] = [1, 2, 4, 8, 16, 32, 64, 128, 512, 3000];
+const DEFAULT: u32 = 3000;
+/// Edge of the boxes [m].
+const EDGE: f64 = 0.2;
+const HZ: f64 = 180.0;
+/// Simulated time [s].
+const DURATION: f64 = 1.0;
+
+const MEASURES: [Measure; 1] = [Measure {
+    name: "sunk_m",
+    words: "the top of the tower has sunk by [m]",
+    noise: 0.2,
+}];
+
+/// Masses of the boxes of a tower from below [kg].
+struct Tower {
+    name: &'static str,
+    masses: &'static [f64],
+}
+
+const TOWERS: [Tower; 3] = [
+    Tower {
+        name: "5 equal boxes",
+        masses: &[1.0; 5],
+    },
+    Tower {
+        name: "10 equal boxes",
+        masses: &[1.0; 10],
+    },
+    Tower {
+        name: "100 kg on 1 kg",
+        masses: &[1.0, 100.0],
+    },
+];
+
+const SLOP: &str = "contacts that last keep up to 5 um of overlap by design";
+
+/// Measures the dial.
+pub fn measure(budget: &Budget) -> Report {
+    let lines: Vec<Line> = TOWERS.iter().map(|tower| line(tower, budget)).collect();
+    let fine = TOWERS.iter().map(|tower| {
+        let at = |hz| sunk(tower, DEFAULT, hz, budget);
+        (at(HZ) - at(4.0 * HZ)).abs()
+    });
+    Report {
+        dial: NAME,
+        title: "largest number of sweeps over lasting contacts under Coulomb's law",
+        axis: "sweeps",
+        is_ordered: true,
+        measures: MEASURES.to_vec(),
+        references: vec![Reference {
+            truth: "a tower that stands does not sink".to_owned(),
+            other: "all sweeps at a step of 1/720 instead of 1/180 s".to_owned(),
+            difference: fine.fold(0.0, f64::max),
+            allowed: 1e-4,
+            unit: "m",
+        }],
+        lines,
+        findings: Vec::new(),
+    }
+}
+
+fn line(tower: &Tower, budget: &Budget) -> Line {
+    let mut line = Line::new(tower.name, "towers", 1, "simulated second");
+    // The overlap that each contact keeps.
+    line.floors[0] = 1e-5 * tower.masses.len() as f64;
+    line.reasons[0] = Some(SLOP);
+    let tasks = CAPS.map(|cap| -> Task {
+        Box::new(move || {
+            sunk(tower, cap, HZ, budget);
+            1
+        })
+    });
+    let times = in_turns(budget.scene_rounds, &mut Vec::from(tasks));
+    for (cap, time) in CAPS.into_iter().zip(times) {
+        line.points.push(Point {
+            setting: cap.to_string(),
+            value: f64::from(cap),
+            is_default: cap == DEFAULT,
+            errors: vec![sunk(tower, cap, HZ, budget)],
+            time: time.per(DURATION * budget.share),
+            step_hz: Some(HZ),
+        });
+    }
+    line
+}
+
+/// How far the top of a tower is below where it was put [m].
+fn sunk(tower: &Tower, cap: u32, hz: f64, budget: &Budget) -> f64 {
+    let (mut world, top) = build(tower, cap, hz);
+    let before = world.body(top).pose().position;
+    run(&mut world, DURATION * budget.share);
+    (world.body(top).pose().position - before).length()
+}
+
+fn build(tower: &Tower, cap: u32, hz: f64) -> (World, BodyId) {
+    let setup = Setup::new(Response::Coulomb).rate(hz).contact(0.0, 0.5);
+    let template = setup.world();
+    let mut world = World::new(Settings {
+        sweep_cap: cap,
+        ..*template.settings()
+    })
+    .expect("a cap of at least one sweep");
+    world.add(setup.floor());
+    let mut top = None;
+    for (index, mass) in (0u32..).zip(tower.masses) {
+        let centre = DVec3::Y * (EDGE * (f64::from(index) + 0.5));
+        top = Some(world.add(setup.cuboid(DVec3::splat(0.5 * EDGE), *mass, centre)));
+    }
+    (world, top.expect("a tower has boxes"))
+}
