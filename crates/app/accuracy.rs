@@ -12,10 +12,12 @@ mod cap;
 mod continuous;
 mod figure;
 mod hits;
+mod kernels;
 mod ladder;
 mod oracle;
 mod overlay;
 mod poses;
+mod precision;
 mod profile;
 mod racks;
 mod reflection;
@@ -81,6 +83,11 @@ const DIALS: &[Dial] = &[
         name: response::NAME,
         share: 4,
         measure: response::measure,
+    },
+    Dial {
+        name: precision::NAME,
+        share: 1,
+        measure: precision::measure,
     },
 ];
 

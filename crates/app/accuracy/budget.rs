@@ -42,7 +42,7 @@ impl Budget {
                 deep_poses: 20,
                 rounds: 5,
                 scene_rounds: 3,
-                throws: 100,
+                throws: 60,
                 hits: 40,
                 share: 0.25,
                 config,

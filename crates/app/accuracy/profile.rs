@@ -36,6 +36,41 @@ impl Profile {
         }
     }
 
+    /// The outline as a smooth curve through its corners, in so many slices for each of the table's.
+    ///
+    /// Cubics whose slopes are those of the parabola through three neighbours; the base's edge and its flat stay.
+    pub fn smooth(&self, finer: usize) -> Profile {
+        let wall = &self.corners[1..];
+        let length = |i: usize| (wall[i + 1].0 - wall[i].0).hypot(wall[i + 1].1 - wall[i].1);
+        let last = wall.len() - 1;
+        let slope = |i: usize, of: fn(&(f64, f64)) -> f64| {
+            let chord = |i: usize| (of(&wall[i + 1]) - of(&wall[i])) / length(i);
+            match i {
+                0 => chord(0),
+                i if i == last => chord(last - 1),
+                i => {
+                    let (before, after) = (length(i - 1), length(i));
+                    (chord(i - 1) * after + chord(i) * before) / (before + after)
+                }
+            }
+        };
+        let mut corners = vec![self.corners[0], wall[0]];
+        for i in 0..last {
+            for k in 1..=finer {
+                let t = k as f64 / finer as f64;
+                let at = |of: fn(&(f64, f64)) -> f64| {
+                    let (p, q) = (of(&wall[i]), of(&wall[i + 1]));
+                    let (u, v) = (slope(i, of) * length(i), slope(i + 1, of) * length(i));
+                    let s = 1.0 - t;
+                    p * s * s * (1.0 + 2.0 * t) + q * t * t * (3.0 - 2.0 * t) + u * t * s * s
+                        - v * t * t * s
+                };
+                corners.push((at(|p| p.0).max(0.0), at(|p| p.1)));
+            }
+        }
+        Profile { corners }
+    }
+
     /// The same with corners on the outline at so many equal lengths along it, and at both ends of the base.
     pub fn slices(&self, count: usize) -> Profile {
         // The base's flat is kept: a pin stands on it.

@@ -118,8 +118,13 @@ impl Line {
 }
 
 /// Value below which 95 of 100 lie; 0 of none.
-pub fn p95(mut values: Vec<f64>) -> f64 {
+pub fn p95(values: Vec<f64>) -> f64 {
+    share_below(values, 0.95)
+}
+
+/// Value below which this share lies; 0 of none.
+pub fn share_below(mut values: Vec<f64>, share: f64) -> f64 {
     values.sort_by(f64::total_cmp);
-    let place = (0.95 * values.len() as f64).ceil() as usize;
+    let place = (share * values.len() as f64).ceil() as usize;
     values.get(place.saturating_sub(1)).copied().unwrap_or(0.0)
 }

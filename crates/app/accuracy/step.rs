@@ -36,8 +36,8 @@ const MEASURES: [Measure; 4] = [
         noise: 0.2,
     },
     Measure {
-        name: "energy_gain_share",
-        words: "largest gain of energy, of a shot without losses",
+        name: "energy_drift_share",
+        words: "largest change of energy, as a share, of a shot without losses",
         noise: 1.0,
     },
     Measure {
@@ -48,8 +48,7 @@ const MEASURES: [Measure; 4] = [
 ];
 
 const EXACT_HIT: &str = "contacts are found at their own time inside a step, so a first hit is the same whatever the step";
-const EXACT_SLIDE: &str = "an impact law in closed form over the time of contact, whatever the step; what is left is the first \
-stretch in which the ball comes to lie";
+const STRETCHES: &str = "a step of 1/60 s is carried in two stretches of 1/120 s, which are finer than the one of 1/90 s";
 
 /// Measures the dial.
 pub fn measure(budget: &Budget) -> Report {
@@ -163,8 +162,9 @@ fn path(report: &mut Report, response: Response, budget: &Budget) {
     let truth = slide::place(response);
     let integrated = slide::integrated(response);
     let mut line = Line::new(name, "sliding ball", MEASURES.len(), "simulated second");
-    line.floors[1] = 1e-9;
-    line.reasons[1] = Some(EXACT_SLIDE);
+    // The distance at which bodies count as touching.
+    line.floors[1] = 1e-7;
+    line.reasons[1] = Some(STRETCHES);
     let tasks = RATES.map(|hz| -> Task {
         Box::new(move || {
             std::hint::black_box(slide::simulated(response, hz));
@@ -200,13 +200,13 @@ fn shot(hz: f64) -> World {
 
 fn energy(report: &mut Report, budget: &Budget) {
     let duration = 2.0 * budget.share;
-    let gain = |hz: f64| {
+    let drift = |hz: f64| {
         let mut world = shot(hz);
         let before = world.energy();
         let mut most = 0.0_f64;
         for _ in 0..(duration * hz) as u64 {
             world.step();
-            most = most.max(world.energy() / before - 1.0);
+            most = most.max((world.energy() / before - 1.0).abs());
         }
         most
     };
@@ -218,9 +218,6 @@ fn energy(report: &mut Report, budget: &Budget) {
     );
     // What 1e5 impacts' rounding adds up to.
     line.floors[2] = 1e-12;
-    line.reasons[2] = Some(
-        "what overlaps by up to 10 um of contacts that last is worth in potential energy, which no step makes smaller",
-    );
     let tasks = RATES.map(|hz| -> Task {
         Box::new(move || {
             let mut world = shot(hz);
@@ -235,7 +232,7 @@ fn energy(report: &mut Report, budget: &Budget) {
     for (hz, time) in RATES.into_iter().zip(times) {
         let time = time.per(duration);
         line.points
-            .push(point(hz, MEASURES.len(), 2, gain(hz), time));
+            .push(point(hz, MEASURES.len(), 2, drift(hz), time));
     }
     report.lines.push(line);
 }
@@ -272,7 +269,7 @@ fn fallen(report: &mut Report, budget: &Budget) {
         truth: format!("fallen pins of {} throws at the finest step", budget.throws),
         other: "as many other throws".to_owned(),
         difference: reference.distance(other),
-        allowed: 1.5 * noise,
+        allowed: 2.0 * noise,
         unit: "pins",
     });
     report.findings.push(format!(
