@@ -207,7 +207,11 @@ impl World {
         let slip = touch.slip(&self.bodies);
         let approach = touch.normal.dot(slip);
         let most = self.patience(ELASTIC_BLOWS);
-        let worn = |slot: usize| self.bodies[slot].blows >= most;
+        // What does not move is struck by many bodies in a step, and none of them is worn by that.
+        let worn = |slot: usize| {
+            let body = &self.bodies[slot];
+            body.is_dynamic() && body.blows >= most
+        };
         // A slow touch is the beginning of a lasting contact, and that has a friction of its own.
         let is_soft = approach < self.resting_speed() || !elastic || worn(touch.a) || worn(touch.b);
         let impulse = self.impact_impulse(touch, slip, is_soft);
