@@ -1,5 +1,7 @@
 //! Tests of the whole product, one module each.
 
+/// What accuracy costs: dials, references, files.
+mod accuracy;
 /// Meshes and textures against their generator.
 mod assets;
 /// What is refused, and with which sentence.

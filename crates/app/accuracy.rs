@@ -16,12 +16,15 @@ mod kernels;
 mod ladder;
 mod oracle;
 mod overlay;
+#[cfg(feature = "peers")]
+mod peers;
 mod poses;
 mod precision;
 mod profile;
 mod racks;
 mod reflection;
 mod response;
+mod simbench;
 mod slide;
 mod solver;
 mod step;
@@ -88,6 +91,26 @@ const DIALS: &[Dial] = &[
         name: precision::NAME,
         share: 1,
         measure: precision::measure,
+    },
+    Dial {
+        name: simbench::rolling::NAME,
+        share: 4,
+        measure: simbench::rolling::measure,
+    },
+    Dial {
+        name: simbench::bouncing::NAME,
+        share: 4,
+        measure: simbench::bouncing::measure,
+    },
+    Dial {
+        name: simbench::spheres::NAME,
+        share: 8,
+        measure: simbench::spheres::measure,
+    },
+    Dial {
+        name: simbench::spheres::ELASTIC,
+        share: 8,
+        measure: simbench::spheres::measure_elastic,
     },
 ];
 

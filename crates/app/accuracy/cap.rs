@@ -8,7 +8,7 @@ use physics::query::{Limits, Separation, separation};
 use super::budget::Budget;
 use super::oracle;
 use super::poses::{self, CLASSES, Case, Class};
-use super::report::{Line, Measure, Point, Reference, Report, p95};
+use super::report::{Line, Measure, Point, Reference, Report, largest, p95};
 use super::timing::{Task, in_turns};
 use crate::random::SplitMix64;
 
@@ -83,10 +83,52 @@ pub fn measure(budget: &Budget) -> Report {
         for (class, cases) in CLASSES.iter().zip(&all) {
             let cases = &cases[usize::from(panel.is_deep)];
             report.lines.push(line(class, panel, cases, budget));
+            #[cfg(feature = "peers")]
+            if !panel.is_warm {
+                report.lines.push(parry(class, panel, cases, budget));
+            }
         }
     }
     report.references = references(&all);
+    report.findings = findings(&report.lines);
     report
+}
+
+/// What a small cap saves, and how much longer parry takes where it is in the build.
+fn findings(lines: &[Line]) -> Vec<String> {
+    let mut all = Vec::new();
+    for panel in PANELS {
+        let here = || lines.iter().filter(move |line| line.panel == panel.name);
+        let searched = here().filter(|line| line.points.len() > 1 && line.reasons[0].is_none());
+        let shares = searched.map(|line| {
+            let time = |index: usize| line.points[index].time.median;
+            format!("{} {:.2}", line.name, time(0) / time(DEFAULT as usize - 1))
+        });
+        let shares: Vec<String> = shares.collect();
+        all.push(format!(
+            "{}: time of cap 1 over cap {DEFAULT}: {}",
+            panel.name,
+            shares.join(", ")
+        ));
+        let peers = here().filter(|line| line.is_peer).filter_map(|peer| {
+            let name = peer.name.strip_suffix(super::figure::PARRY)?;
+            let ours = here().find(|line| line.name == name)?.points.last()?;
+            let theirs = peer.points.first()?;
+            Some(format!(
+                "{name} {:.1}",
+                theirs.time.median / ours.time.median
+            ))
+        });
+        let peers: Vec<String> = peers.collect();
+        if !peers.is_empty() {
+            all.push(format!(
+                "{}: time of parry over ours: {}",
+                panel.name,
+                peers.join(", ")
+            ));
+        }
+    }
+    all
 }
 
 /// Poses apart, 1e-6 to 1e-1 of a metre scale, and overlapping ones.
@@ -153,6 +195,41 @@ fn line(class: &Class, panel: Panel, cases: &[Case], budget: &Budget) -> Line {
     line
 }
 
+/// parry's GJK and EPA on the same support points, which have no dial.
+#[cfg(feature = "peers")]
+fn parry(class: &Class, panel: Panel, cases: &[Case], budget: &Budget) -> Line {
+    let ask = |case: &Case| {
+        let (a, b) = case.placed();
+        super::peers::gap(a, b)
+    };
+    let name = format!("{}{}", class.name, super::figure::PARRY);
+    let mut line = Line::new(name, panel.name, MEASURES.len(), "query");
+    line.is_peer = true;
+    let answers: Vec<_> = cases.iter().map(ask).collect();
+    // No answer is as far off as the case is deep or apart, and knows no normal.
+    let pairs = || answers.iter().zip(cases);
+    let gaps =
+        pairs().map(|(answer, case)| answer.map_or(case.gap.abs(), |a| (a.0 - case.gap).abs()));
+    let normals = pairs().map(|(answer, case)| answer.map_or(1.0, |a| angle(a.1, case.normal)));
+    let errors = vec![p95(gaps.collect()), p95(normals.collect())];
+    let task: Task = Box::new(|| {
+        for case in cases {
+            black_box(ask(black_box(case)));
+        }
+        cases.len() as u64
+    });
+    let time = in_turns(budget.rounds, &mut [task])[0];
+    line.points.push(Point {
+        setting: "GJK and EPA".to_owned(),
+        value: 0.0,
+        is_default: false,
+        errors,
+        time,
+        step_hz: None,
+    });
+    line
+}
+
 /// Angle between two unit vectors [rad].
 pub fn angle(a: DVec3, b: DVec3) -> f64 {
     libm::atan2(a.cross(b).length(), a.dot(b))
@@ -160,17 +237,14 @@ pub fn angle(a: DVec3, b: DVec3) -> f64 {
 
 /// Constructed truth against the search of the sphere, and that search against one that looks three times as hard.
 fn references(all: &[[Vec<Case>; 2]]) -> Vec<Reference> {
-    let (mut built, mut searched): (f64, f64) = (0.0, 0.0);
-    for [apart, deep] in all {
-        for case in apart.iter().step_by(10) {
-            let (a, b) = case.placed();
-            built = built.max((oracle::largest(a, b, 600, 3).gap - case.gap).abs());
-        }
-        for case in deep.iter().step_by(4) {
-            let (a, b) = case.placed();
-            searched = searched.max((oracle::largest(a, b, 5000, 12).gap - case.gap).abs());
-        }
-    }
+    let off = |case: &Case, samples, starts| {
+        let (a, b) = case.placed();
+        (oracle::largest(a, b, samples, starts).gap - case.gap).abs()
+    };
+    let apart = all.iter().flat_map(|[apart, _]| apart.iter().step_by(10));
+    let built = largest(apart.map(|case| off(case, 600, 3)));
+    let deep = all.iter().flat_map(|[_, deep]| deep.iter().step_by(4));
+    let searched = largest(deep.map(|case| off(case, 5000, 12)));
     vec![
         Reference {
             truth: "gaps that the poses were built with".to_owned(),

@@ -26,6 +26,14 @@ pub const COLOURS: [RGBColor; 10] = [
     RGBColor(23, 190, 207),
 ];
 
+/// Ends the name of a line that is parry's answer to what the line of the rest of the name is ours.
+pub const PARRY: &str = ", parry";
+
+/// The name without whose answer it is: what shares a colour.
+fn subject(line: &Line) -> &str {
+    line.name.strip_suffix(PARRY).unwrap_or(&line.name)
+}
+
 /// Makes text in pictures possible without a library of the system; the font is egui's.
 pub fn prepare_font() -> Result<()> {
     let font = epaint_default_fonts::UBUNTU_LIGHT;
@@ -137,7 +145,7 @@ fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, report: &Report) -> Res
     let (_, below) = area.split_vertically(TITLE);
     let (columns, rows) = layout(report);
     let (left, right) = below.split_horizontally(PANEL.0 * columns);
-    let lines = names(&report.lines, |line| &line.name);
+    let lines = names(&report.lines, subject);
     let areas = left.split_evenly((rows as usize, columns as usize));
     for (area, (name, measure)) in areas.iter().zip(cells(report)) {
         let members: Vec<(&Line, RGBColor)> = report
@@ -145,16 +153,21 @@ fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, report: &Report) -> Res
             .iter()
             .filter(|line| line.panel == name)
             .map(|line| {
-                let place = lines.iter().position(|name| *name == line.name);
+                let place = lines.iter().position(|name| *name == subject(line));
                 (line, COLOURS[place.unwrap_or(0) % COLOURS.len()])
             })
             .collect();
         panel(area, report, name, measure, &members)?;
     }
-    legend(&right, &lines)
+    let has_parry = report.lines.iter().any(|line| subject(line) != line.name);
+    legend(&right, &lines, has_parry)
 }
 
-fn legend<B: DrawingBackend>(area: &DrawingArea<B, Shift>, lines: &[&str]) -> Result<()> {
+fn legend<B: DrawingBackend>(
+    area: &DrawingArea<B, Shift>,
+    lines: &[&str],
+    has_parry: bool,
+) -> Result<()> {
     let mut y = 26;
     for (index, name) in lines.iter().enumerate() {
         let colour = COLOURS[index % COLOURS.len()];
@@ -172,6 +185,12 @@ fn legend<B: DrawingBackend>(area: &DrawingArea<B, Shift>, lines: &[&str]) -> Re
     y += 22;
     area.draw(&TriangleMarker::new((16, y + 8), 8, BLACK.stroke_width(2)))
         .map_err(failed)?;
+    if has_parry {
+        let cross = Cross::new((16, y + 28), 6, BLACK.stroke_width(2));
+        area.draw(&cross).map_err(failed)?;
+        let words = Text::new("parry: GJK and EPA", (34, y + 22), ("sans-serif", 13));
+        area.draw(&words).map_err(failed)?;
+    }
     let words = "knee, with its setting";
     area.draw(&Text::new(words, (34, y), ("sans-serif", 13)))
         .map_err(failed)
@@ -253,6 +272,11 @@ fn panel<B: DrawingBackend>(
         chart
             .draw_series(LineSeries::new(places.iter().copied(), stroke))
             .map_err(failed)?;
+        if subject(line) != line.name {
+            let crosses = places.iter().map(|p| Cross::new(*p, 6, stroke));
+            chart.draw_series(crosses).map_err(failed)?;
+            continue;
+        }
         let dots = places.iter().map(|p| Circle::new(*p, 2, colour.filled()));
         chart.draw_series(dots).map_err(failed)?;
         let marked = |index: usize| {

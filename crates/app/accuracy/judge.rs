@@ -99,9 +99,17 @@ pub fn unexplained(report: &Report) -> Vec<String> {
         return Vec::new();
     }
     let mut complaints = Vec::new();
-    for line in report.lines.iter().filter(|line| line.points.len() > 1) {
+    let ours = |line: &&Line| !line.is_peer && line.points.len() > 1;
+    for line in report.lines.iter().filter(ours) {
         for (index, measure) in report.measures.iter().enumerate() {
-            if line.errors(index).iter().any(|e| !e.is_finite()) {
+            let errors = line.errors(index);
+            if errors.iter().any(|e| e.is_nan()) {
+                complaints.push(format!(
+                    "{}, {}, {}: {} is not a number",
+                    report.dial, line.panel, line.name, measure.name
+                ));
+            }
+            if errors.iter().any(|e| !e.is_finite()) {
                 continue;
             }
             let (words, needs) = sentence(line, index, measure);

@@ -8,7 +8,7 @@ use physics::{Pose, Shape};
 
 use super::budget::Budget;
 use super::kernels::{double, single};
-use super::report::{Line, Measure, Point, Reference, Report, p95};
+use super::report::{Line, Measure, Point, Reference, Report, largest, p95};
 use super::timing::{Task, Time, in_turns};
 use crate::hard_cases::scene::{G, between, direction, rotation, vector};
 use crate::random::SplitMix64;
@@ -104,7 +104,7 @@ pub fn measure(budget: &Budget) -> Report {
         references: vec![Reference {
             truth: "gaps that the ellipsoids were built with".to_owned(),
             other: "the physics crate's query".to_owned(),
-            difference: built.fold(0.0, f64::max),
+            difference: largest(built),
             allowed: 1e-12,
             unit: "m",
         }],

@@ -45,6 +45,8 @@ pub struct Line {
     pub reasons: Vec<Option<&'static str>>,
     /// Why the time does not depend on the dial, where it does not.
     pub time_reason: Option<&'static str>,
+    /// Whether it is somebody else's method, of which nothing is promised.
+    pub is_peer: bool,
     /// In the dial's order, cheapest first.
     pub points: Vec<Point>,
 }
@@ -112,9 +114,16 @@ impl Line {
             floors: vec![0.0; measures],
             reasons: vec![None; measures],
             time_reason: None,
+            is_peer: false,
             points: Vec::new(),
         }
     }
+}
+
+/// The largest of all; not a number if one of them is none.
+pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
+    let worse = |x: f64, y: f64| if y > x || y.is_nan() { y } else { x };
+    values.into_iter().fold(0.0, worse)
 }
 
 /// Value below which 95 of 100 lie; 0 of none.

@@ -8,7 +8,7 @@ use physics::response::{Coefficients, compliance, impulse};
 
 use super::budget::Budget;
 use super::racks::{self, Rack};
-use super::report::{Line, Measure, Point, Reference, Report, share_below};
+use super::report::{Line, Measure, Point, Reference, Report, largest, share_below};
 use super::timing::{Task, in_turns};
 use crate::hard_cases::scene::{MODELS, between, composite_pin, direction, rotation, vector};
 use crate::random::SplitMix64;
@@ -189,7 +189,7 @@ fn impacts(report: &mut Report, budget: &Budget) {
     report.references.push(Reference {
         truth: "Coulomb's impulse in closed form".to_owned(),
         other: "its share by bisection against the cone".to_owned(),
-        difference: apart.fold(0.0, f64::max),
+        difference: largest(apart),
         allowed: 1e-10,
         unit: "of the impulse",
     });
