@@ -103,6 +103,8 @@ fn a_reflection_leaves_close_pairs_unproven_and_the_second_order_does_not() {
 #[test]
 fn errors_fall_along_the_other_dials_or_the_report_says_why_not() {
     for dial in [
+        "ladder",
+        "step",
         "solver",
         "continuous",
         "precision",

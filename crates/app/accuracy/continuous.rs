@@ -8,7 +8,7 @@ use physics::{Effect, Effects, Response, Settings, World};
 use super::budget::Budget;
 use super::hits::{self, How};
 use super::profile::Profile;
-use super::report::{Line, Measure, Point, Reference, Report, p95};
+use super::report::{Line, Measure, Point, Reason, Reference, Report, p95};
 use super::step::{HIT_FLOORS, RATES, point, time_hits};
 use super::timing::{Task, in_turns};
 use crate::hard_cases::scene::{Setup, between};
@@ -38,7 +38,6 @@ const MEASURES: [Measure; 2] = [
 ];
 
 const EXACT: &str = "contacts are found at their own time inside a step, whatever its length";
-const NO_MISS: &str = "nothing passes through at any step";
 
 /// Measures the dial.
 pub fn measure(budget: &Budget) -> Report {
@@ -57,7 +56,7 @@ pub fn measure(budget: &Budget) -> Report {
         });
         let mut line = Line::new(name, "first hit", MEASURES.len(), "simulated second");
         line.floors[0] = HIT_FLOORS[0];
-        line.reasons[0] = is_continuous.then_some(EXACT);
+        line.reasons[0] = is_continuous.then_some(Reason::up_to(1e-3, EXACT));
         let few = &throws[..throws.len().min(20)];
         let times = time_hits(&hows, &pin, few, budget.scene_rounds);
         for (how, time) in hows.iter().zip(times) {
@@ -103,7 +102,6 @@ pub fn measure(budget: &Budget) -> Report {
 fn wall(is_continuous: bool, budget: &Budget) -> Line {
     let name = if is_continuous { "on" } else { "off" };
     let mut line = Line::new(name, "thin wall", MEASURES.len(), "simulated second");
-    line.reasons[1] = is_continuous.then_some(NO_MISS);
     let mut tasks: Vec<Task> = Vec::new();
     for hz in RATES {
         tasks.push(Box::new(move || {

@@ -270,7 +270,7 @@ fn panel<B: DrawingBackend>(
     for ((line, colour), places) in members.iter().zip(&all) {
         let stroke = colour.stroke_width(2);
         chart
-            .draw_series(LineSeries::new(places.iter().copied(), stroke))
+            .draw_series(segments(places, stroke))
             .map_err(failed)?;
         if subject(line) != line.name {
             let crosses = places.iter().map(|p| Cross::new(*p, 6, stroke));
@@ -298,6 +298,12 @@ fn panel<B: DrawingBackend>(
         chart.draw_series(words).map_err(failed)?;
     }
     Ok(())
+}
+
+/// A line piece by piece: where one of a piece turns back sharply, its corner would stick out far.
+pub fn segments(places: &[(f64, f64)], stroke: ShapeStyle) -> Vec<PathElement<(f64, f64)>> {
+    let pairs = places.windows(2);
+    pairs.map(|pair| PathElement::new(pair, stroke)).collect()
 }
 
 /// A number on a logarithmic axis in few characters.

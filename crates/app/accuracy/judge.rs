@@ -67,22 +67,24 @@ pub fn knee(line: &Line, measure: usize) -> Option<usize> {
 /// What the errors of a line do, in words; the second says whether that needs a reason that is missing.
 pub fn sentence(line: &Line, index: usize, measure: &Measure) -> (String, bool) {
     let errors = line.errors(index);
-    let course = course(&errors, line.floors[index], measure.noise);
-    let reason = line.reasons[index];
     let at = |place: usize| line.points[place].setting.clone();
-    let (words, needs) = match course {
-        Course::Nothing => ("no more than the reference's own error".to_owned(), false),
+    // The words, and the errors that need a reason.
+    let (words, odd) = match course(&errors, line.floors[index], measure.noise) {
+        Course::Nothing => ("no more than the reference's own error".to_owned(), None),
         Course::Falls => (
             "falls to the end or to the reference's own error".to_owned(),
-            false,
+            None,
         ),
-        Course::Constant => ("does not depend on the dial".to_owned(), true),
-        Course::Plateau(from) => (format!("stays from {} on", at(from)), true),
-        Course::Rises(place) => (format!("rises at {}", at(place)), true),
+        Course::Constant => ("does not depend on the dial".to_owned(), Some(&errors[..])),
+        Course::Plateau(from) => (format!("stays from {} on", at(from)), Some(&errors[from..])),
+        Course::Rises(place) => (format!("rises at {}", at(place)), Some(&errors[place..])),
     };
-    match (needs, reason) {
-        (true, Some(reason)) => (format!("{words}: {reason}"), false),
-        _ => (words, needs),
+    match (odd, line.reasons[index]) {
+        (None, _) => (words, false),
+        (Some(errors), Some(reason)) if errors.iter().all(|e| *e <= reason.most) => {
+            (format!("{words}: {}", reason.words), false)
+        }
+        _ => (words, true),
     }
 }
 
@@ -143,6 +145,8 @@ pub fn unexplained(report: &Report) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::report::{Point, Reason};
+    use super::super::timing::Time;
     use super::*;
 
     #[test]
@@ -155,5 +159,36 @@ mod tests {
         assert_eq!(course(&[1.0, 1.15, 0.1]), Course::Falls);
         assert_eq!(course(&[1.0, 0.1, 0.2]), Course::Rises(2));
         assert_eq!(course(&[1e-12, 1e-10]), Course::Nothing);
+    }
+
+    #[test]
+    fn sentence_takes_a_reason_for_small_errors_alone() {
+        let measure = Measure {
+            name: "length_m",
+            words: "length",
+            noise: 0.2,
+        };
+        let needs = |errors: [f64; 3], reason| {
+            let mut line = Line::new("line", "panel", 1, "query");
+            line.reasons[0] = reason;
+            line.points = errors.map(point).to_vec();
+            sentence(&line, 0, &measure).1
+        };
+        let reason = Some(Reason::up_to(1e-6, "because"));
+        assert!(!needs([1.0, 0.1, 0.01], None));
+        assert!(needs([1e-7, 1e-7, 1e-7], None));
+        assert!(!needs([1e-7, 1e-7, 1e-7], reason));
+        assert!(needs([1e-7, 1e-7, 0.4], reason));
+    }
+
+    fn point(error: f64) -> Point {
+        Point {
+            setting: String::new(),
+            value: 0.0,
+            is_default: false,
+            errors: vec![error],
+            time: Time::default(),
+            step_hz: None,
+        }
     }
 }

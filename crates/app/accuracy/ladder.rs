@@ -13,7 +13,7 @@ use super::cap::angle;
 use super::hits::{self, How};
 use super::profile::Profile;
 use super::racks::{self, Rack};
-use super::report::{Line, Measure, Point, Reference, Report, largest, p95};
+use super::report::{Line, Measure, Point, Reason, Reference, Report, largest, p95};
 use super::timing::{Task, Time, in_turns};
 use crate::hard_cases::scene::{BALL_RADIUS, between};
 use crate::random::SplitMix64;
@@ -107,7 +107,8 @@ pub fn measure(budget: &Budget) -> Report {
         &places,
         budget,
     );
-    report.lines[1].reasons = vec![Some(NECK); MEASURES.len()];
+    let neck = [0.03, 0.5, 5.0, 0.0].map(|most| Some(Reason::up_to(most, NECK)));
+    report.lines[1].reasons = neck.to_vec();
     throws(&mut report, &ladder, budget);
     report
 }
@@ -203,7 +204,7 @@ fn queries(
     let mut line = Line::new(name, "ball and pin", MEASURES.len(), "query");
     // The table has six digits behind the point: over a slice of 2 mm that is half a milliradian.
     line.floors = vec![5e-7, 5e-4, 5e-3, f64::INFINITY];
-    line.reasons = vec![None, Some(CORNERS), None, None];
+    line.reasons = vec![None, Some(Reason::up_to(0.1, CORNERS)), None, None];
     for (index, (rung, time)) in rungs.iter().zip(times).enumerate() {
         let answers: Vec<_> = places
             .iter()
@@ -266,7 +267,7 @@ fn throws(report: &mut Report, ladder: &[Rung], budget: &Budget) {
         "simulated second",
     );
     line.floors[3] = noise;
-    line.reasons[3] = Some(SCATTER);
+    line.reasons[3] = Some(Reason::up_to(2.0 * noise, SCATTER));
     for (index, (rung, fallen)) in ladder.iter().zip(&all).enumerate() {
         let mut errors = vec![f64::INFINITY; MEASURES.len()];
         errors[3] = fallen.distance(reference);

@@ -4,12 +4,12 @@ use anyhow::Result;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use super::figure::{COLOURS, failed, png_of, short, svg_of};
+use super::figure::{COLOURS, failed, png_of, segments, short, svg_of};
 use super::judge;
 use super::report::{Line, Report};
 
-const SIZE: (u32, u32) = (1000, 620);
-const LEGEND: u32 = 300;
+const SIZE: (u32, u32) = (1060, 620);
+const LEGEND: u32 = 330;
 /// The least share of an error that is shown.
 const LEAST: f64 = 1e-12;
 
@@ -117,7 +117,7 @@ fn draw<B: DrawingBackend>(area: &DrawingArea<B, Shift>, courses: &[Course]) -> 
         let stroke = colour.stroke_width(2);
         let points = course.points.iter().copied();
         chart
-            .draw_series(LineSeries::new(points.clone(), stroke))
+            .draw_series(segments(&course.points, stroke))
             .map_err(failed)?;
         let dots = points.map(|p| Circle::new(p, 2, colour.filled()));
         chart.draw_series(dots).map_err(failed)?;

@@ -30,6 +30,22 @@ pub struct Point {
     pub step_hz: Option<f64>,
 }
 
+/// Why an error stops falling, and what that is good for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reason {
+    /// In words.
+    pub words: &'static str,
+    /// The largest error that it explains.
+    pub most: f64,
+}
+
+impl Reason {
+    /// A reason for errors up to `most`.
+    pub fn up_to(most: f64, words: &'static str) -> Reason {
+        Reason { words, most }
+    }
+}
+
 /// Points of one method over a dial.
 #[derive(Clone, Debug)]
 pub struct Line {
@@ -42,7 +58,7 @@ pub struct Line {
     /// Error of the reference itself, for each measure: less cannot be told from nothing.
     pub floors: Vec<f64>,
     /// For each measure why an error stops falling above its floor, where that is known.
-    pub reasons: Vec<Option<&'static str>>,
+    pub reasons: Vec<Option<Reason>>,
     /// Why the time does not depend on the dial, where it does not.
     pub time_reason: Option<&'static str>,
     /// Whether it is somebody else's method, of which nothing is promised.

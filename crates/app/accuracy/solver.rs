@@ -4,7 +4,7 @@ use glam::DVec3;
 use physics::{BodyId, Response, Settings, World};
 
 use super::budget::Budget;
-use super::report::{Line, Measure, Point, Reference, Report, largest};
+use super::report::{Line, Measure, Point, Reason, Reference, Report, largest};
 use super::timing::{Task, in_turns};
 use crate::hard_cases::scene::{Setup, between, run};
 use crate::random::SplitMix64;
@@ -83,7 +83,7 @@ fn line(tower: &Tower, budget: &Budget) -> Line {
     let mut line = Line::new(tower.name, "towers", 1, "simulated second");
     // The overlap that each contact keeps.
     line.floors[0] = 1e-5 * tower.masses.len() as f64;
-    line.reasons[0] = Some(LOADS);
+    line.reasons[0] = Some(Reason::up_to(0.05, LOADS));
     let tasks = CAPS.map(|cap| -> Task {
         Box::new(move || {
             moved(tower, cap, HZ);

@@ -8,7 +8,7 @@ use super::budget::Budget;
 use super::hits::{self, After, How, Throw};
 use super::profile::Profile;
 use super::racks::{self, Rack};
-use super::report::{Line, Measure, Point, Reference, Report, p95};
+use super::report::{Line, Measure, Point, Reason, Reference, Report, p95};
 use super::slide;
 use super::timing::{Task, Time, in_turns};
 use crate::hard_cases::scene::{Setup, add_alley, add_rack, close_alley, composite_pin, throw};
@@ -128,7 +128,7 @@ fn first_hits(report: &mut Report, budget: &Budget) {
         "simulated second",
     );
     line.floors[0] = HIT_FLOORS[0];
-    line.reasons[0] = Some(EXACT_HIT);
+    line.reasons[0] = Some(Reason::up_to(1e-3, EXACT_HIT));
     let times = time_hits(
         &hows,
         &pin,
@@ -164,7 +164,7 @@ fn path(report: &mut Report, response: Response, budget: &Budget) {
     let mut line = Line::new(name, "sliding ball", MEASURES.len(), "simulated second");
     // The distance at which bodies count as touching.
     line.floors[1] = 1e-7;
-    line.reasons[1] = Some(STRETCHES);
+    line.reasons[1] = Some(Reason::up_to(1e-4, STRETCHES));
     let tasks = RATES.map(|hz| -> Task {
         Box::new(move || {
             std::hint::black_box(slide::simulated(response, hz));
@@ -259,7 +259,10 @@ fn fallen(report: &mut Report, budget: &Budget) {
         "simulated second",
     );
     line.floors[3] = noise;
-    line.reasons[3] = Some("the scatter of samples of this size, not the step");
+    line.reasons[3] = Some(Reason::up_to(
+        2.0 * noise,
+        "the scatter of samples of this size, not the step",
+    ));
     for (hz, fallen) in RATES.into_iter().zip(&all) {
         let error = fallen.distance(reference);
         line.points

@@ -8,7 +8,7 @@ use super::budget::Budget;
 use super::oracle;
 use super::poses::{self, CLASSES, Case};
 use super::reflection;
-use super::report::{Line, Measure, Point, Reference, Report, largest};
+use super::report::{Line, Measure, Point, Reason, Reference, Report, largest};
 use super::timing::{Task, in_turns};
 
 pub const NAME: &str = "update";
@@ -100,7 +100,7 @@ pub fn measure(budget: &Budget) -> Report {
 fn line(method: Method, panel: &str, cases: &[Case], budget: &Budget) -> Line {
     let mut line = Line::new(method.name(), panel, 1, "query");
     if method == Method::Reflection {
-        line.reasons[0] = Some(SWINGS);
+        line.reasons[0] = Some(Reason::up_to(0.2, SWINGS));
     }
     let mut tasks: Vec<Task> = Vec::new();
     for cap in 1..=MOST {

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{Form, GRAVITY, Scenario, Simulated, Thing, lines};
 use crate::accuracy::budget::Budget;
-use crate::accuracy::report::{Line, Measure, Reference, Report, largest};
+use crate::accuracy::report::{Line, Measure, Reason, Reference, Report, largest};
 
 pub const NAME: &str = "bouncing";
 
@@ -45,7 +45,7 @@ pub fn measure(budget: &Budget) -> Report {
     }
     for line in &mut all {
         line.floors = vec![1e-9, 1e-10];
-        line.reasons = vec![Some(EXACT); 2];
+        line.reasons = vec![Some(Reason::up_to(1e-7, EXACT)); 2];
     }
     let apart = RESTITUTIONS.map(|e| (height(e, duration) - integrated(e, duration)).abs());
     Report {

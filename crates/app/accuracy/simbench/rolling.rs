@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{Form, GRAVITY, Scenario, Simulated, Thing, lines};
 use crate::accuracy::budget::Budget;
-use crate::accuracy::report::{Line, Measure, Reference, Report};
+use crate::accuracy::report::{Line, Measure, Reason, Reference, Report};
 
 pub const NAME: &str = "rolling";
 
@@ -39,7 +39,7 @@ pub fn measure(budget: &Budget) -> Report {
     }
     for line in &mut all {
         line.floors[0] = 1e-9;
-        line.reasons[0] = Some(STEADY);
+        line.reasons[0] = Some(Reason::up_to(1e-5, STEADY));
     }
     Report {
         dial: NAME,

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::{Form, GRAVITY, Scenario, Simulated, Thing, lines};
 use crate::accuracy::budget::Budget;
-use crate::accuracy::report::{Line, Measure, Reference, Report};
+use crate::accuracy::report::{Line, Measure, Reason, Reference, Report};
 use crate::hard_cases::scene::between;
 use crate::random::SplitMix64;
 
@@ -48,7 +48,7 @@ pub fn measure(budget: &Budget) -> Report {
     let mut all = lines("restitution 0", &scenario, &DEEP, budget, error);
     for line in &mut all {
         line.floors[0] = 1e-5;
-        line.reasons[0] = Some(SLOP);
+        line.reasons[0] = Some(Reason::up_to(1e-4, SLOP));
     }
     report(
         NAME,
@@ -74,7 +74,7 @@ pub fn measure_elastic(budget: &Budget) -> Report {
     let mut all = lines("restitution 1", &scenario, &DRIFT, budget, error);
     for line in &mut all {
         line.floors[0] = 1e-11;
-        line.reasons[0] = Some(ROUNDED);
+        line.reasons[0] = Some(Reason::up_to(1e-7, ROUNDED));
     }
     report(
         ELASTIC,
