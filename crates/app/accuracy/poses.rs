@@ -3,6 +3,8 @@
 //! A point of a with the outward normal n, and b moved until its point with the normal -n lies a gap further along n:
 //! both tangent planes are square to n and the points line up, so that this is the distance of two convex bodies.
 
+use std::f64::consts::TAU;
+
 use glam::{DQuat, DVec3};
 use physics::{Pose, Shape};
 
@@ -125,7 +127,7 @@ pub fn case(class: &Class, gap: f64, seed: u64, index: usize) -> Case {
     let point = oracle::support((&a, &pose_a), n);
     let reach = oracle::support((&b, &Pose::new(DVec3::ZERO, turn_b)), -n);
     let pose_b = Pose::new(point + n * gap - reach, turn_b);
-    let aside = DQuat::from_axis_angle(n, between(random, 0.0, 6.28)) * n.any_orthonormal_vector();
+    let aside = DQuat::from_axis_angle(n, between(random, 0.0, TAU)) * n.any_orthonormal_vector();
     let warm = n + aside * WARM;
     Case {
         a: (a, pose_a),
