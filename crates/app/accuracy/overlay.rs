@@ -50,11 +50,17 @@ fn course(report: &Report) -> Option<Course> {
         .iter()
         .filter(has_default)
         .flat_map(|line| (0..report.measures.len()).map(move |measure| (line, measure)));
-    // The line that the dial moves most shows what the dial is for.
+    // The line that the dial moves most shows what the dial is for, unless it goes up and down.
     let (line, measure, _) = choices
         .map(|(line, measure)| (line, measure, span(line, measure)))
         .filter(|(_, _, span)| *span > 2.0)
-        .max_by(|x, y| x.2.total_cmp(&y.2))?;
+        .max_by(|x, y| {
+            let key = |(line, measure, span): &(&Line, usize, f64)| {
+                (!goes_up(report, line, *measure), *span)
+            };
+            let (x, y) = (key(x), key(y));
+            x.0.cmp(&y.0).then(x.1.total_cmp(&y.1))
+        })?;
     let default = line.points.iter().position(|p| p.is_default)?;
     let time = line.points[default].time.median;
     let most = line.errors(measure).into_iter().fold(0.0, f64::max);
@@ -69,6 +75,13 @@ fn course(report: &Report) -> Option<Course> {
         default,
         knee: knee.map(|i| (i, line.points[i].setting.clone())),
     })
+}
+
+/// Whether an error rises by far somewhere along the dial.
+fn goes_up(report: &Report, line: &Line, measure: usize) -> bool {
+    let noise = report.measures[measure].noise.max(1.0);
+    let course = judge::course(&line.errors(measure), line.floors[measure], noise);
+    matches!(course, judge::Course::Rises(_))
 }
 
 /// How many times smaller the smallest error of a line is than the largest.
