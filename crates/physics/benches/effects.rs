@@ -25,7 +25,7 @@ core (valgrind's callgrind, the steps alone; they are the same on every run), in
 one, the default set, and none. What an effect saves when it is left out is its own work and what follows from it: without
 gravity nothing lies on anything, without friction nothing rolls.
 
-- `roll`: a ball rolls for a second over oil towards a rack that stands awake, a hand moves beside it.
+- `roll`: a ball rolls for a second over oil towards a rack that falls asleep, a hand moves above the lane.
 - `throws`: sixteen throws of three seconds at 8 m/s into the rack. Which pins fall, and so what there is to do, changes with
   every effect that is left out.
 - `flight`: ten pins tumble through the air for a second and touch nothing.
@@ -81,12 +81,12 @@ fn alley(settings: Settings, x: f64, z: f64, speed: f64) -> World {
     world
 }
 
-/// Ten pins that tumble away from each other.
+/// Ten pins that tumble far from each other.
 fn flight(settings: Settings) -> World {
     let mut world = World::new(settings).expect("these settings can run");
     let mut random = Random(7);
     for spot in spots() {
-        let mut def = pin(&composite_pin(), material(0.7, 0.7), spot * 3.0);
+        let mut def = pin(&composite_pin(), material(0.7, 0.7), spot * 30.0);
         def.drag_area_m2 = 0.03;
         def.linear_velocity = random.vector();
         def.angular_velocity = random.vector() * 20.0;
