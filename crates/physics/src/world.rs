@@ -27,8 +27,8 @@ pub struct Settings {
     pub response: Response,
     /// Largest number of new normals per search (§2.1); 20 in the paper's experiment.
     pub iteration_cap: u32,
-    /// Largest number of sweeps over a group of lasting contacts under `Response::Coulomb`, which ends earlier where it has
-    /// come to terms; the paper's laws, whose friction is not corrected, end at 40 whatever this says.
+    /// Largest number of sweeps over a group of lasting contacts under `Response::Coulomb`, and of one that hardly moves
+    /// under the paper's laws, which ends earlier where it has come to terms; what moves faster ends at 40 under these.
     pub sweep_cap: u32,
     /// Contact time after which a lasting contact has taken the share `friction_rate` of the slip [s].
     pub friction_reference_s: f64,

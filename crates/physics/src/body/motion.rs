@@ -115,14 +115,18 @@ impl Body {
     }
 
     fn sweep_of_steady_turning(&self) -> Sweep {
-        let rate = self.angular_velocity();
-        let axis = match self.compound.symmetry() {
-            Symmetry::Axis => self.rotation * DVec3::Y,
-            _ => DVec3::ZERO,
-        };
-        let along = axis.dot(rate);
-        let across = (rate - axis * along).length();
-        Sweep::new(along, across, self.compound.bounding_radius())
+        let (rate, radius) = (self.own_turning(), self.compound.bounding_radius());
+        match self.compound.symmetry() {
+            Symmetry::Axis => {
+                Sweep::new(rate.y, (rate.x * rate.x + rate.z * rate.z).sqrt(), radius)
+            }
+            _ => Sweep::new(0.0, rate.length(), radius),
+        }
+    }
+
+    /// Angular velocity that belongs to `momentum` [rad/s], body frame.
+    fn own_turning(&self) -> DVec3 {
+        self.rotation.conjugate() * self.momentum / self.mass.inertia
     }
 
     /// Recomputes reach and end pose up to `until`, after a change of velocity.
@@ -155,10 +159,7 @@ impl Body {
                 Spin::Never => self.rotation,
                 Spin::Even => turn(self.momentum * (dt / self.mass.inertia.x)) * self.rotation,
                 Spin::Free => self.tumbled(dt),
-                Spin::Steady => {
-                    let local = self.rotation.conjugate() * self.momentum;
-                    turn(self.rotation * (local / self.mass.inertia) * dt) * self.rotation
-                }
+                Spin::Steady => self.rotation * turn(self.own_turning() * dt),
             },
         };
         Pose::new(position, rotation.normalize())
@@ -203,15 +204,13 @@ impl Body {
         if self.spin != Spin::Steady || self.momentum == DVec3::ZERO {
             return;
         }
-        // The angular velocity stays, so the momentum goes round with the body.
+        // The angular velocity stays in the world and in the body, so the momentum goes round with the body.
+        self.momentum = rotation * (before.conjugate() * self.momentum);
+        // What contacts add stays a change of the angular velocity in the world.
         let i = self.mass.inertia;
-        let carry = |momentum: DVec3| {
-            let turning = before * (before.conjugate() * momentum / i);
-            rotation * (rotation.conjugate() * turning * i)
-        };
-        self.momentum = carry(self.momentum);
-        for (_, torque) in &mut self.bend {
-            *torque = carry(*torque);
+        for (_, torque) in self.bend.iter_mut().filter(|bend| bend.1 != DVec3::ZERO) {
+            let change = before * (before.conjugate() * *torque / i);
+            *torque = rotation * (rotation.conjugate() * change * i);
         }
     }
 

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::pairs::Key;
 use super::touch::{Frame, place};
-use super::{CONTACT, PARTING, SINK};
+use super::{CONTACT, PARTING, SINK, sink};
 use crate::advance::{Grade, Held, hold};
 use crate::body::Body;
 use crate::compound::Part;
@@ -40,6 +40,8 @@ pub(crate) struct Approach<'a> {
     parts: (&'a Part, &'a Part),
     /// Whether a contact of the two lasts: it then may sink a little.
     touching: bool,
+    /// How far it may [m].
+    sink: f64,
     /// Length of the step [s].
     dt: f64,
     /// Where the parts are at the end of the step.
@@ -109,6 +111,7 @@ impl<'a> Approach<'a> {
             bodies,
             parts,
             touching: known.touching,
+            sink: sink(known.rocks),
             dt,
             ends: (ends.0.place(parts.0), ends.1.place(parts.1)),
             bend: bodies.0.sweep().acceleration + bodies.1.sweep().acceleration,
@@ -167,7 +170,7 @@ impl<'a> Approach<'a> {
     fn bound(&self) -> Bound {
         // A lasting contact may sink a little; one that just separated starts from where it is.
         let floor = if self.touching || self.gap <= CONTACT {
-            self.gap.min(0.0) - SINK
+            self.gap.min(0.0) - self.sink
         } else {
             0.0
         };

@@ -6,7 +6,13 @@ use crate::query::Placed;
 use crate::shape::Kind;
 
 /// Rise of a flat base across its width up to which it counts as parallel to the face below [m].
-const PARALLEL: f64 = 2e-6;
+const PARALLEL: f64 = 5e-7;
+
+/// How far hard surfaces yield where an edge presses [m].
+const YIELD: f64 = 1e-6;
+
+/// Largest height of the arc that presses, per radius: the load acts at the rim, and may not get outside the base by more.
+const FLATTEST: f64 = 0.05;
 
 /// Tilt of a flat base up to which its edge presses on an arc rather than on a point [rad]: a pin tips at 0.17.
 const ON_EDGE: f64 = 0.2;
@@ -116,19 +122,30 @@ pub(crate) fn base(a: &Placed, b: &Placed, normal: DVec3) -> Option<Base> {
     })
 }
 
-/// Whether the edge of one shape's flat base, a little tilted, stands on a flat face of the other.
-pub(crate) fn is_on_edge(a: &Placed, b: &Placed, normal: DVec3) -> bool {
+/// Half the chord on which a flat base, a little tilted, stands on a flat face of the other shape [m], as a vector along
+/// the face to where it stands; `None` if no base does.
+///
+/// All of the rim that comes as near to the face as surfaces yield presses there.
+pub(crate) fn chord(a: &Placed, b: &Placed, normal: DVec3) -> Option<DVec3> {
     let (round, down) = match (is_flat(b), is_flat(a)) {
         (Some(_), _) if has_disc(a) => (a, normal),
         (_, Some(_)) if has_disc(b) => (b, -normal),
-        _ => return false,
+        _ => return None,
     };
     let piece = round.shape.tip(round.local(down)).piece;
-    let Some(sense) = round.shape.pole(piece) else {
-        return false;
-    };
-    let axis = round.rotation.y_axis * sense;
-    axis.dot(down) > 0.0 && axis.cross(down).length() < ON_EDGE
+    let axis = round.rotation.y_axis * round.shape.pole(piece)?;
+    let upright = axis.dot(down);
+    let outward = down * upright - axis;
+    let tilt = outward.length();
+    if upright <= 0.0 || tilt >= ON_EDGE {
+        return None;
+    }
+    if tilt == 0.0 {
+        return Some(DVec3::ZERO);
+    }
+    let radius = round.shape.piece(piece).semi.x;
+    let rise = (YIELD / tilt).min(FLATTEST * radius);
+    Some(outward * ((rise * (2.0 * radius - rise)).sqrt() / tilt))
 }
 
 fn has_disc(shape: &Placed) -> bool {

@@ -360,7 +360,10 @@ impl World {
 fn aim(touch: &mut Touch, bodies: &[Body]) {
     if let Some(base) = touch.base {
         touch.set_point(pressure_point(touch, &base, bodies), bodies);
-    } else if let Some(patch) = touch.patch {
+    } else if let Some(patch) = touch.patch
+        && touch.chord == DVec3::ZERO
+    {
+        // Not of a base that tilts: between the corners of its patch its rim is lower.
         touch.set_point(strike_point(touch, &patch, bodies), bodies);
     }
 }

@@ -39,10 +39,17 @@ use crate::world::World;
 pub(crate) const CONTACT: f64 = 1e-7;
 /// A lasting contact may sink this far in a step before it is struck again [m].
 pub(crate) const SINK: f64 = 1e-5;
+/// The same for a flat base that rocks: what its edge sinks in before it takes over is lifted again, and adds up [m].
+const SINK_OF_BASE: f64 = 2.5e-7;
 /// Bodies that overlap and part slower than this are in contact [m/s].
 pub(crate) const PARTING: f64 = 5e-3;
 /// Gap beyond which a lasting contact is given up [m].
 pub(crate) const RELEASE: f64 = 1e-5;
+
+/// How far a lasting contact may sink in a step before it is struck again [m].
+pub(crate) fn sink(rocks: bool) -> f64 {
+    if rocks { SINK_OF_BASE } else { SINK }
+}
 
 impl World {
     /// Advances by one fixed step of `1 / step_hz` seconds.

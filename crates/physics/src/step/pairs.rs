@@ -19,6 +19,8 @@ pub(crate) struct PartPair {
     pub part_a: u8,
     pub part_b: u8,
     pub touching: bool,
+    /// Whether a flat base rocked gently on a face when the contact was last looked at.
+    pub rocks: bool,
     /// Where the contact as it was last seen is kept.
     seen: u32,
     /// Normal of the last search; zero before the first.
@@ -254,6 +256,7 @@ impl Pairs {
                 part_a,
                 part_b,
                 touching: false,
+                rocks: false,
                 seen: NONE,
                 normal: DVec3::ZERO,
             }));

@@ -16,7 +16,7 @@ use super::grip::Friction;
 use super::pairs::{Contact, Key, Load};
 use super::row::{Mover, Row};
 use super::scratch::Carry;
-use super::solve::{Halves, Work, group};
+use super::solve::{Halves, Work, group, most_passes};
 use super::touch::Touch;
 use crate::body::Motion;
 use crate::effects::Effect;
@@ -24,11 +24,13 @@ use crate::response::{Response, friction_rate_per_step};
 use crate::world::World;
 
 /// Depth that a lasting contact keeps [m]; deeper ones are pushed out slowly.
-const SLOP: f64 = 5e-6;
+const SLOP: f64 = 5e-7;
 /// Speed at which an overlap of bodies that do not turn is opened [m/s]: lifting all pins that fast for a step of 1/60 s takes 1e-5 of a ball's energy.
 const PUSH: f64 = 1e-3;
 /// Points of a contact nearer to each other than this from one step to the next are the same [m].
 const SAME: f64 = 0.01;
+/// Velocity of a carried body that is a rounding error of the passes [m/s], per gravity's kick.
+const NOISE: f64 = 1e-6;
 /// Gap that is not worth closing [m]; a standing pin then has no velocity at all.
 const EXACT: f64 = 1e-7;
 
@@ -81,8 +83,10 @@ impl World {
             is_cone: self.settings.response == Response::Coulomb,
             is_rough: self.plan.has(Effect::Friction),
             rolling: self.plan.rolling,
+            slow: kick.length(),
             enough: 1e-4 * kick.length() + 1e-15,
-            cone_passes: self.settings.sweep_cap,
+            passes: most_passes(&self.settings),
+            sweep_cap: self.settings.sweep_cap,
         };
         let mut room = std::mem::take(&mut self.scratch.carry);
         room.number(self.bodies.len(), carried, touches);
@@ -92,6 +96,7 @@ impl World {
         group(&mut room);
         room.before.extend(&room.movers);
         let first = room.answer(&self.bodies, carried.len(), &halves);
+        self.still(&mut room, carried.len(), NOISE * kick.length());
         room.middle.extend(&room.movers);
         room.rows.iter_mut().for_each(Row::renew);
         let second = room.answer(&self.bodies, carried.len(), &halves);
@@ -123,6 +128,18 @@ impl World {
         }
         room.clear();
         self.scratch.carry = room;
+    }
+
+    /// Stops those of the first `carried` movers whose surfaces are slower than `noise` [m/s], which is what passes leave.
+    ///
+    /// A body that stays where it is need not be looked at again.
+    fn still(&self, room: &mut Carry, carried: usize, noise: f64) {
+        for (mover, slot) in room.movers.iter_mut().zip(&room.slots).take(carried) {
+            let radius = self.bodies[*slot].compound.bounding_radius();
+            if mover.linear.length() + radius * mover.angular.length() < noise {
+                (mover.linear, mover.angular) = (DVec3::ZERO, DVec3::ZERO);
+            }
+        }
     }
 
     /// Counts what a stretch took.
@@ -232,6 +249,10 @@ impl World {
                 }
                 let allowed = self.allowed_approach(&touch, span);
                 let mut row = Row::new(touch, numbers, &room.movers, allowed, friction);
+                if points == 1 && touch.chord != DVec3::ZERO {
+                    // What is elastic gives back what the chord's foremost end takes.
+                    row.chord = touch.chord * (1.0 - self.elasticity_of(&touch));
+                }
                 let near = |load: &&Load| load.point.distance_squared(touch.point) < SAME * SAME;
                 if let Some(load) = loads.iter().flatten().find(near) {
                     row.expect(*load, 0.5 * span);
@@ -289,7 +310,7 @@ impl World {
     }
 
     /// Whether a body is driven, or touched by one that is.
-    fn is_held(&self, slot: usize) -> bool {
+    pub(super) fn is_held(&self, slot: usize) -> bool {
         let driven = |slot: usize| self.bodies[slot].motion == Motion::Driven;
         let contacts = self.pairs.contacts(slot);
         driven(slot)

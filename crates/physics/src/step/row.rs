@@ -8,7 +8,7 @@ use super::base::Base;
 use super::grip::{Friction, Hold};
 use super::pairs::Load;
 use super::touch::Touch;
-use crate::body::Body;
+use crate::body::{Body, Motion};
 use crate::response::{compliance, rate_without_pull};
 
 /// Approach that a contact has to stop for friction to act there [m/s]: of several contacts that share a load in no
@@ -25,6 +25,7 @@ pub(crate) struct Mover {
     pub angular: DVec3,
     inv_mass: f64,
     inv_inertia: DMat3,
+    is_driven: bool,
 }
 
 impl Mover {
@@ -34,6 +35,7 @@ impl Mover {
             angular: body.angular_velocity(),
             inv_mass: body.inv_mass(),
             inv_inertia: body.inv_inertia(),
+            is_driven: body.motion == Motion::Driven,
         }
     }
 
@@ -77,6 +79,8 @@ pub(crate) struct Row {
     /// Approach that is allowed [m/s]: a gap may close in the stretch, an overlap must open.
     pub allowed: f64,
     pub friction: Friction,
+    /// Half the chord on which a tilted base resists circling [m], as a vector to where it stands.
+    pub chord: DVec3,
     /// `K`, and how a normal impulse of 1 N s turns the two bodies.
     k: DMat3,
     stiffness: f64,
@@ -84,6 +88,10 @@ pub(crate) struct Row {
     turns: (DVec3, DVec3),
     /// Normal impulse so far [N s].
     pressed: f64,
+    /// Normal impulse on the way to which the passes ended [N s]: where they begin next time.
+    hoped: f64,
+    /// How fast the contact closed before it was answered [m/s].
+    approach: f64,
     /// Tangential impulse on a so far, within the cone [N s].
     rubbed: DVec3,
     plane: Plane,
@@ -108,11 +116,14 @@ impl Row {
             movers,
             allowed,
             friction,
+            chord: DVec3::ZERO,
             k: DMat3::ZERO,
             stiffness: 0.0,
             levers: zero,
             turns: zero,
             pressed: 0.0,
+            hoped: 0.0,
+            approach: 0.0,
             rubbed: DVec3::ZERO,
             plane: Plane::default(),
             given: zero,
@@ -147,7 +158,7 @@ impl Row {
     pub fn load(&self, span: f64) -> Load {
         Load {
             point: self.touch.point,
-            pressed: self.pressed / span,
+            pressed: self.pressed.max(self.hoped) / span,
             rubbed: self.rubbed / span,
         }
     }
@@ -158,6 +169,7 @@ impl Row {
             (self.pressed, self.rubbed) = (0.0, DVec3::ZERO);
             return;
         }
+        self.pressed = self.pressed.max(self.hoped);
         let impulse = self.rubbed - self.touch.normal * self.pressed;
         all[self.movers.0].push(self.touch.arm_a, impulse);
         all[self.movers.1].push(self.touch.arm_b, -impulse);
@@ -166,6 +178,27 @@ impl Row {
     /// Normal impulse so far [N s].
     pub fn pressed(&self) -> f64 {
         self.pressed
+    }
+
+    /// Notes how fast the contact closes before it is answered.
+    pub fn note_approach(&mut self, all: &[Mover]) {
+        self.approach = self.approach_now(all);
+    }
+
+    /// Energy that the normal impulse so far has given to the bodies [J].
+    ///
+    /// Endless for a base, which does not add up so, and for a driven body, which gives whatever its way takes.
+    pub fn gained(&self, all: &[Mover]) -> f64 {
+        if self.touch.base.is_some() || self.is_driven(all) {
+            return f64::INFINITY;
+        }
+        -0.5 * self.pressed * (self.approach + self.approach_now(all))
+    }
+
+    fn approach_now(&self, all: &[Mover]) -> f64 {
+        let (a, b) = (&all[self.movers.0], &all[self.movers.1]);
+        self.touch.normal.dot(a.linear - b.linear) + self.levers.0.dot(a.angular)
+            - self.levers.1.dot(b.angular)
     }
 
     /// Takes back all that it gave along the normal, or as a base.
@@ -182,7 +215,7 @@ impl Row {
             all[self.movers.0].push(self.touch.arm_a, impulse);
             all[self.movers.1].push(self.touch.arm_b, -impulse);
         }
-        self.pressed = 0.0;
+        (self.hoped, self.pressed) = (self.pressed, 0.0);
     }
 
     fn prepare(&mut self, all: &[Mover]) {
@@ -216,6 +249,22 @@ impl Row {
         }
     }
 
+    /// Whether a driven body is part of the contact.
+    pub fn is_driven(&self, all: &[Mover]) -> bool {
+        all[self.movers.0].is_driven || all[self.movers.1].is_driven
+    }
+
+    /// Whether friction at a rate acts on a slip below `slow` [m/s].
+    pub fn creeps(&self, all: &[Mover], slow: f64) -> bool {
+        if !matches!(self.friction, Friction::Rate(_)) {
+            return false;
+        }
+        let (a, b) = (&all[self.movers.0], &all[self.movers.1]);
+        let slip = a.velocity(self.touch.arm_a) - b.velocity(self.touch.arm_b);
+        let n = self.touch.normal;
+        (slip - n * n.dot(slip)).length_squared() < slow * slow
+    }
+
     /// The e = 0 blend of Eq. (9) at a point: `F00 + mu (F01 - F00)`.
     pub fn rub(&mut self, all: &mut [Mover]) {
         let n = self.touch.normal;
@@ -223,7 +272,7 @@ impl Row {
         let slip_of =
             |all: &[Mover]| all[self.movers.0].velocity(arm_a) - all[self.movers.1].velocity(arm_b);
         if n.dot(slip_of(all)) - self.allowed + self.pressed * self.stiffness <= NOTHING {
-            self.press(all);
+            self.press(all, 1.0);
             return;
         }
         self.twist(all);
@@ -270,12 +319,13 @@ impl Row {
     }
 
     /// One pass at a point: the normal impulse that stops the approach, or less of it if it pulls.
-    pub fn press(&mut self, all: &mut [Mover]) -> f64 {
+    ///
+    /// A `stride` above 1 and below 2 goes beyond, which brings slow passes forward.
+    pub fn press(&mut self, all: &mut [Mover], stride: f64) -> f64 {
         let n = self.touch.normal;
-        let (a, b) = (&all[self.movers.0], &all[self.movers.1]);
-        let approach = n.dot(a.linear - b.linear) + self.levers.0.dot(a.angular)
-            - self.levers.1.dot(b.angular);
-        let pressed = (self.pressed + (approach - self.allowed) / self.stiffness).max(0.0);
+        let approach = self.approach_now(all);
+        let step = stride * (approach - self.allowed) / self.stiffness;
+        let pressed = (self.pressed + step).max(0.0);
         let change = pressed - self.pressed;
         self.pressed = pressed;
         if change == 0.0 {
@@ -334,7 +384,7 @@ impl Row {
             (self.movers.1, self.movers.0, self.touch.b)
         };
         if !all[own].is_moved() || all[other].is_moved() {
-            return self.press(all).max(self.grip(all));
+            return self.press(all, 1.0).max(self.grip(all));
         }
         let other_arm = base.centre - bodies[self.touch.a + self.touch.b - slot].position;
         let ground = all[other].velocity(other_arm);
@@ -369,7 +419,7 @@ impl Row {
             self.rubbed = DVec3::ZERO;
             self.rub(all);
             for _ in 0..EDGE_PASSES {
-                self.press(all);
+                self.press(all, 1.0);
                 if self.grip(all) == 0.0 {
                     break;
                 }

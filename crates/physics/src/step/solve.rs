@@ -12,12 +12,19 @@ use super::row::{Mover, Row};
 use super::scratch::Carry;
 use super::touch::Touch;
 use crate::body::Body;
+use crate::response::Response;
+use crate::world::Settings;
 
 /// Most passes over the normals of a group; over normals and friction in a cone the settings say.
 ///
 /// Passes that begin with nothing may end early, those that begin with loads must not: these may hold energy until the
 /// passes have come to terms. Stacks take a few hundred when something has changed, and then one or two a step.
 const PASSES: u32 = 40;
+/// What a pass may leave of the normals of a group that creeps [m/s], per gravity's kick.
+const CREEP: f64 = 1e-7;
+/// Passes after which the others make longer strides, and how long: the changes of the first fall quickly or not at all.
+const LONG: u32 = 32;
+const STRIDE: f64 = 1.8;
 /// Changes that fall from pass to pass by less than this ratio says are taken to fall so.
 const SLOWEST: f64 = 0.9999;
 
@@ -31,10 +38,24 @@ pub(crate) struct Halves {
     pub is_rough: bool,
     /// Arm of the rolling resistance [m], where there is any.
     pub rolling: Option<f64>,
-    /// Change of a velocity that ends the passes [m/s].
+    /// Slip below which a contact with friction at a rate is slow [m/s]; see `press_first`.
+    pub slow: f64,
+    /// Change of a velocity that ends the passes [m/s], and their number.
     pub enough: f64,
-    /// Most passes in a cone.
-    pub cone_passes: u32,
+    pub passes: u32,
+    /// Most passes in a cone, and over a group that creeps.
+    pub sweep_cap: u32,
+}
+
+impl Halves {
+    /// The same for a group that creeps: what is left of its normals would add up.
+    fn of_creep(&self) -> Halves {
+        Halves {
+            enough: CREEP * self.slow + 1e-15,
+            passes: self.sweep_cap,
+            ..*self
+        }
+    }
 }
 
 /// What the answer of a half took.
@@ -51,20 +72,26 @@ pub(crate) struct Work {
 /// In a cone the passes begin with what the contacts carried last. Friction at a rate is given once and not corrected:
 /// there they begin with nothing, for what is given to wrong velocities could add energy.
 fn answer_group(rows: &mut [Row], all: &mut [Mover], bodies: &[Body], halves: &Halves) -> Work {
-    let expects = halves.is_cone && rows.len() > 1;
+    let creeps = rows.len() > 1 && rows.iter().any(|row| row.creeps(all, halves.slow));
+    let is_free = creeps && !rows.iter().any(|row| row.is_driven(all));
+    let expects = is_free || halves.is_cone && rows.len() > 1;
+    if creeps {
+        rows.iter_mut().for_each(|row| row.note_approach(all));
+    }
     for row in rows.iter_mut() {
         row.begin(all, expects && row.touch.base.is_none());
     }
+    let exact = halves.of_creep();
+    let halves = if is_free { &exact } else { halves };
     let mut work = Work::default();
-    let rubs = |row: &Row| matches!(row.friction, Friction::Rate(_));
-    if rows.len() > 1 && rows.iter().any(rubs) {
+    if creeps {
         work.passes = press_first(rows, all, bodies, halves);
     }
     for row in rows.iter_mut() {
         match (row.touch.base, row.friction) {
             _ if halves.is_cone => break,
             (Some(_), _) => {}
-            (None, Friction::None) => _ = row.press(all),
+            (None, Friction::None) => _ = row.press(all, 1.0),
             (None, _) => row.rub(all),
         }
     }
@@ -75,10 +102,10 @@ fn answer_group(rows: &mut [Row], all: &mut [Mover], bodies: &[Body], halves: &H
             }
             work.passes += 1;
         }
-        _ => work.passes += settle(rows, all, bodies, halves),
+        _ => work.passes += settle(rows, all, bodies, halves).0,
     }
-    if let Some(arm) = halves.rolling {
-        let braked = brake_group(rows, all, bodies, (arm, halves));
+    if rows.iter().any(|row| row.resists(halves.rolling)) {
+        let braked = brake_group(rows, all, bodies, halves);
         work.passes += braked.passes;
         work.braked = braked.braked;
     }
@@ -88,11 +115,14 @@ fn answer_group(rows: &mut [Row], all: &mut [Mover], bodies: &[Body], halves: &H
 /// Lets a group press before it rubs; returns the passes.
 ///
 /// What one contact presses turns the body and lets it slip at the others until they press too. Rubbed against before,
-/// such slips add up to a creep of 0.3 mm/s of a pin that has stopped rolling. What is squeezed so that no impulses suit
-/// all its contacts begins anew: friction is not to work on what the passes leave of it.
+/// such slips add up to a creep of 0.3 mm/s of a pin that has stopped rolling. They are smaller than gravity's kick, and
+/// what slips faster need not wait. Under a heavy body on a light one the passes may take several stretches, each
+/// beginning where the last one ended. What is squeezed so that no impulses suit all its contacts would gain energy from
+/// where it began, and begins anew.
 fn press_first(rows: &mut [Row], all: &mut [Mover], bodies: &[Body], halves: &Halves) -> u32 {
-    let passes = settle(rows, all, bodies, halves);
-    if passes == PASSES * rows.len() as u32 {
+    let (passes, missing) = settle(rows, all, bodies, halves);
+    let is_settled = missing <= halves.enough;
+    if !is_settled && rows.iter().map(|row| row.gained(all)).sum::<f64>() > 0.0 {
         for row in rows.iter_mut() {
             row.take_back(all);
         }
@@ -100,56 +130,62 @@ fn press_first(rows: &mut [Row], all: &mut [Mover], bodies: &[Body], halves: &Ha
     passes
 }
 
-/// Rolling resistance of all contacts of a group, once their normal impulses are known; returns what that took.
+/// What resists rolling at all contacts of a group, once their normal impulses are known; returns what that took.
 ///
 /// What turns less may approach, part or slip at its contacts: the group then has to come to terms again.
-fn brake_group(
-    rows: &mut [Row],
-    all: &mut [Mover],
-    bodies: &[Body],
-    (arm, halves): (f64, &Halves),
-) -> Work {
+fn brake_group(rows: &mut [Row], all: &mut [Mover], bodies: &[Body], halves: &Halves) -> Work {
     let (mut work, mut worst) = (Work::default(), 0.0_f64);
     for row in rows.iter() {
-        if let Some(change) = row.brake(arm, all) {
+        if let Some(change) = row.circle(all) {
+            worst = worst.max(change);
+        }
+        if let Some(change) = halves.rolling.and_then(|arm| row.brake(arm, all)) {
             (work.braked, worst) = (work.braked + 1, worst.max(change));
         }
     }
     if worst > halves.enough {
-        work.passes = settle(rows, all, bodies, halves);
+        work.passes = settle(rows, all, bodies, halves).0;
     }
     work
 }
 
-/// Passes over all rows until they come to terms; returns how many rows that took.
+/// Passes over all rows until they come to terms; returns how many rows that took, and what is missing [m/s].
 ///
 /// What is still missing follows from how fast the changes fall from pass to pass: under a heavy body on a light one they
 /// are small and fall slowly, and add up to much.
-fn settle(rows: &mut [Row], all: &mut [Mover], bodies: &[Body], halves: &Halves) -> u32 {
-    let most = if halves.is_cone {
-        halves.cone_passes
-    } else {
-        PASSES
-    };
+fn settle(rows: &mut [Row], all: &mut [Mover], bodies: &[Body], halves: &Halves) -> (u32, f64) {
     let grips = halves.is_cone && halves.is_rough;
-    let (mut last, mut ratio) = (f64::INFINITY, 0.0);
-    for pass in 0..most {
+    let (mut last, mut ratio, mut missing) = (f64::INFINITY, 0.0, 0.0);
+    for pass in 0..halves.passes {
+        let stride = if pass >= LONG && halves.passes > PASSES {
+            STRIDE
+        } else {
+            1.0
+        };
         let mut worst: f64 = 0.0;
         for row in rows.iter_mut() {
             worst = worst.max(match row.touch.base {
                 Some(base) => row.stand(&base, all, bodies),
-                None if grips => row.press(all).max(row.grip(all)),
-                None => row.press(all),
+                None if grips => row.press(all, stride).max(row.grip(all)),
+                None => row.press(all, stride),
             });
         }
         let now = (worst / last).min(SLOWEST);
-        let missing = worst * (now.max(ratio) / (1.0 - now.max(ratio))).max(1.0);
+        missing = worst * (now.max(ratio) / (1.0 - now.max(ratio))).max(1.0);
         if missing <= halves.enough {
-            return (pass + 1) * rows.len() as u32;
+            return ((pass + 1) * rows.len() as u32, missing);
         }
         (last, ratio) = (worst, now);
     }
-    most * rows.len() as u32
+    (halves.passes * rows.len() as u32, missing)
+}
+
+/// Passes that a half may take, over normals and friction in cones or over normals alone.
+pub(crate) fn most_passes(settings: &Settings) -> u32 {
+    match settings.response {
+        Response::Coulomb => settings.sweep_cap,
+        _ => PASSES,
+    }
 }
 
 impl Carry {

@@ -2,11 +2,12 @@
 
 use glam::{DMat3, DVec3};
 
-use super::base::{Base, base, is_on_edge};
+use super::base::{Base, base, chord};
 use super::pairs::Key;
 use super::patch::{Patch, patch};
 use crate::body::Body;
 use crate::compound::Part;
+use crate::effects::Effect;
 use crate::pose::Pose;
 use crate::query::{self, Limits, Placed, Separation};
 use crate::response::compliance;
@@ -14,6 +15,9 @@ use crate::world::World;
 
 /// Overlap in which the way out is looked for again, and not along the face that showed it last [m].
 const DEEP: f64 = 1e-3;
+
+/// Turning of a base that rocks and does not fall [rad/s]: a pin tips at 1.2 about its edge .
+const ROCKING: f64 = 2.0;
 
 /// A contact between two parts at the bodies' current poses.
 #[derive(Clone, Copy, Debug)]
@@ -32,6 +36,10 @@ pub(crate) struct Touch {
     pub patch: Option<Patch>,
     /// Whether it is a flat base, lying or a little tilted, on a flat face: friction then also takes the turn on it.
     pub on_base: bool,
+    /// Whether such a base rocks so gently that it does not fall.
+    pub rocks: bool,
+    /// Half the chord on which a tilted base presses [m], as a vector along the face to where it stands.
+    pub chord: DVec3,
 }
 
 /// A pose with its rotation as a matrix, from which parts are placed.
@@ -111,6 +119,14 @@ impl World {
         }
     }
 
+    /// Whether a body turns slower than a pin that tips over, and no hand pushes it.
+    fn rocks(&self, slot: usize) -> bool {
+        let body = &self.bodies[slot];
+        let most = ROCKING * body.mass.inertia.max_element();
+        body.momentum.length_squared() < most * most
+            && !(self.plan.has(Effect::Hand) && self.is_held(slot))
+    }
+
     /// Exact search between two parts at given poses.
     pub(crate) fn search(&self, a: &Placed, b: &Placed, normal: DVec3) -> Separation {
         if let Some(answer) = query::on_face(a, b, normal)
@@ -137,6 +153,12 @@ impl World {
         let found = self.search(&placed_a, &placed_b, known.normal);
         let both_move = body_a.is_dynamic() && body_b.is_dynamic();
         let base = base(&placed_a, &placed_b, found.normal).filter(|_| !both_move);
+        let chord = match base {
+            None if !both_move => chord(&placed_a, &placed_b, found.normal),
+            _ => None,
+        };
+        let on_base = base.is_some() || chord.is_some();
+        // What is all but level carries at corners of its base: those that are not down yet come down in the stretch.
         let patch = match base {
             Some(_) => None,
             None => patch(&placed_a, &placed_b, &found),
@@ -152,11 +174,13 @@ impl World {
             arm_b: DVec3::ZERO,
             base,
             patch,
-            on_base: base.is_some()
-                || patch.is_none() && is_on_edge(&placed_a, &placed_b, found.normal),
+            on_base,
+            rocks: on_base && self.rocks(a) && self.rocks(b),
+            chord: chord.unwrap_or(DVec3::ZERO),
         };
         touch.set_point((found.point_a + found.point_b) * 0.5, &self.bodies);
-        self.pairs.part_mut(key).normal = found.normal;
+        let known = self.pairs.part_mut(key);
+        (known.normal, known.rocks) = (found.normal, touch.rocks);
         self.pairs.remember(key, ways, touch);
         touch
     }
