@@ -1,7 +1,5 @@
 //! The paper's dial: the largest number of iterations of the detection, for each class of pair, cold and warm.
 
-use std::hint::black_box;
-
 use glam::DVec3;
 use physics::query::{Limits, Separation, separation};
 
@@ -9,7 +7,7 @@ use super::budget::Budget;
 use super::oracle;
 use super::poses::{self, CLASSES, Case, Class};
 use super::report::{Line, Measure, Point, Reason, Reference, Report, largest, p95};
-use super::timing::{Task, in_turns};
+use super::timing::{Task, each, in_turns};
 use crate::random::SplitMix64;
 
 pub const NAME: &str = "cap";
@@ -171,12 +169,7 @@ fn line(class: &Class, panel: Panel, cases: &[Case], budget: &Budget) -> Line {
     }
     let mut tasks: Vec<Task> = Vec::new();
     for cap in 1..=DEFAULT {
-        tasks.push(Box::new(move || {
-            for case in cases {
-                black_box(ask(black_box(case), panel, cap));
-            }
-            cases.len() as u64
-        }));
+        tasks.push(each(cases, move |case| ask(case, panel, cap)));
     }
     let times = in_turns(budget.rounds, &mut tasks);
     drop(tasks);
@@ -214,13 +207,7 @@ fn parry(class: &Class, panel: Panel, cases: &[Case], budget: &Budget) -> Line {
         pairs().map(|(answer, case)| answer.map_or(case.gap.abs(), |a| (a.0 - case.gap).abs()));
     let normals = pairs().map(|(answer, case)| answer.map_or(1.0, |a| angle(a.1, case.normal)));
     let errors = vec![p95(gaps.collect()), p95(normals.collect())];
-    let task: Task = Box::new(|| {
-        for case in cases {
-            black_box(ask(black_box(case)));
-        }
-        cases.len() as u64
-    });
-    let time = in_turns(budget.rounds, &mut [task])[0];
+    let time = in_turns(budget.rounds, &mut [each(cases, ask)])[0];
     line.points.push(Point {
         setting: "GJK and EPA".to_owned(),
         value: 0.0,

@@ -1,6 +1,5 @@
 //! The shape ladder of the pin: one ellipsoid, the composite of 1997, denser composites, a convex cloud, the profile.
 
-use std::hint::black_box;
 use std::sync::Arc;
 
 use game::{BareAlley, Config, ObjectShape};
@@ -14,7 +13,7 @@ use super::hits::{self, How};
 use super::profile::Profile;
 use super::racks::{self, Rack};
 use super::report::{Line, Measure, Point, Reason, Reference, Report, largest, p95};
-use super::timing::{Task, Time, in_turns};
+use super::timing::{Time, each, in_turns};
 use crate::hard_cases::scene::{BALL_RADIUS, between};
 use crate::random::SplitMix64;
 
@@ -184,14 +183,9 @@ fn queries(
     budget: &Budget,
 ) {
     let ball = Shape::sphere(BALL_RADIUS).expect("the ball's radius is positive");
-    let tasks = rungs.iter().map(|rung| -> Task {
-        let (pin, ball) = (&rung.pin, &ball);
-        Box::new(move || {
-            for place in places {
-                black_box(ask(pin, ball, black_box(place.centre)));
-            }
-            places.len() as u64
-        })
+    let tasks = rungs.iter().map(|rung| {
+        let ball = &ball;
+        each(places, move |place| ask(&rung.pin, ball, place.centre))
     });
     let times = in_turns(budget.rounds, &mut tasks.collect::<Vec<_>>());
     let throws: Vec<_> = (0..budget.hits).map(hits::throw).collect();
@@ -241,12 +235,12 @@ fn point(rung: &Rung, index: usize, errors: Vec<f64>, time: Time) -> Point {
 
 /// Distributions of fallen pins; the reference is the profile itself.
 fn throws(report: &mut Report, ladder: &[Rung], budget: &Budget) {
-    let rack = |rung: &Rung, seed| Rack {
+    let rack = |rung: &Rung| Rack {
         response: Response::Guarded,
         step_hz: 180.0,
         contact: (0.49, 0.49),
         pin: rung.pin.clone(),
-        seed,
+        seed: 1,
     };
     let densest = RACKED[usize::from(budget.share == 1.0)];
     let racked = ladder
@@ -254,12 +248,11 @@ fn throws(report: &mut Report, ladder: &[Rung], budget: &Budget) {
         .position(|rung| rung.pin.parts().len() == densest);
     let ladder = &ladder[..=racked.expect("the ladder has this rung")];
     let last = &ladder[ladder.len() - 1];
-    let mut racks: Vec<Rack> = ladder.iter().map(|rung| rack(rung, 1)).collect();
-    racks.extend([rack(last, 2), rack(last, 3)]);
+    let racks: Vec<Rack> = ladder.iter().map(rack).collect();
     let count = (budget.throws / FEWER).max(budget.throws.min(50));
-    let all = racks::fallen(&racks, count);
-    let (reference, other) = (&all[ladder.len()], &all[ladder.len() + 1]);
-    let noise = reference.noise(6);
+    let name = format!("at {}", last.name);
+    let compared = racks::compare(racks, &rack(last), &name, count, 6);
+    let (all, reference, noise) = (&compared.samples, &compared.reference, compared.noise);
     let mut line = Line::new(
         "ladder",
         "jittered throws",
@@ -268,23 +261,17 @@ fn throws(report: &mut Report, ladder: &[Rung], budget: &Budget) {
     );
     line.floors[3] = noise;
     line.reasons[3] = Some(Reason::up_to(2.0 * noise, SCATTER));
-    for (index, (rung, fallen)) in ladder.iter().zip(&all).enumerate() {
+    for (index, (rung, fallen)) in ladder.iter().zip(all).enumerate() {
         let mut errors = vec![f64::INFINITY; MEASURES.len()];
         errors[3] = fallen.distance(reference);
         let mut point = point(rung, index, errors, fallen.time);
         point.step_hz = Some(180.0);
         line.points.push(point);
     }
-    report.references.push(Reference {
-        truth: format!("fallen pins of {count} throws at {}", last.name),
-        other: "as many other throws".to_owned(),
-        difference: reference.distance(other),
-        allowed: 2.0 * noise,
-        unit: "pins",
-    });
+    report.references.push(compared.check);
     let means: Vec<String> = ladder
         .iter()
-        .zip(&all)
+        .zip(all)
         .map(|(rung, fallen)| format!("{} {:.2}", rung.name, fallen.mean()))
         .collect();
     report

@@ -1,15 +1,13 @@
 //! Precision: the innermost formulas in `f32` and in `f64`. The crate itself is `f64` throughout.
 
-use std::hint::black_box;
-
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, Mat3, Vec3};
 use physics::query::{Limits, separation};
 use physics::{Pose, Shape};
 
 use super::budget::Budget;
 use super::kernels::{double, single};
 use super::report::{Line, Measure, Point, Reference, Report, largest, p95};
-use super::timing::{Task, Time, in_turns};
+use super::timing::{Task, Time, each, in_turns};
 use crate::hard_cases::scene::{G, between, direction, rotation, vector};
 use crate::random::SplitMix64;
 
@@ -185,33 +183,18 @@ fn ellipsoids(pairs: &[Pair], at: DVec3) -> Both<'_> {
         .iter()
         .map(|p| (p.squares, p.centres.map(|c| c + at)))
         .collect();
-    let in_single = halves
-        .iter()
-        .map(|(s, c)| f64::from(single::ellipsoids(*s, c[1] - c[0]).0));
-    let in_double = wholes
-        .iter()
-        .map(|(s, c)| double::ellipsoids(*s, c[1] - c[0]).0);
-    let off = |found: Vec<f64>| {
-        let both = found.iter().zip(pairs);
-        both.map(|(gap, pair)| (gap - pair.gap).abs())
-            .collect::<Vec<f64>>()
+    let in_single = |(squares, c): &([Mat3; 2], [Vec3; 2])| {
+        f64::from(single::ellipsoids(*squares, c[1] - c[0]).0)
     };
-    let errors = [off(in_single.collect()), off(in_double.collect())];
-    let tasks: [Task; 2] = [
-        Box::new(move || {
-            for (squares, c) in &halves {
-                black_box(single::ellipsoids(black_box(*squares), c[1] - c[0]));
-            }
-            halves.len() as u64
-        }),
-        Box::new(move || {
-            for (squares, c) in &wholes {
-                black_box(double::ellipsoids(black_box(*squares), c[1] - c[0]));
-            }
-            wholes.len() as u64
-        }),
-    ];
-    (errors, tasks)
+    let in_double =
+        |(squares, c): &([DMat3; 2], [DVec3; 2])| double::ellipsoids(*squares, c[1] - c[0]).0;
+    let off = |(gap, pair): (f64, &Pair)| (gap - pair.gap).abs();
+    let singles = halves.iter().map(in_single).zip(pairs).map(off).collect();
+    let doubles = wholes.iter().map(in_double).zip(pairs).map(off).collect();
+    (
+        [singles, doubles],
+        [each(halves, in_single), each(wholes, in_double)],
+    )
 }
 
 /// A point at a known distance from a frustum's mantle.
@@ -246,37 +229,15 @@ fn frusta(balls: &[Ball]) -> Both<'_> {
         .iter()
         .map(|b| (b.point.as_vec3(), b.radii.map(|r| r as f32), b.half as f32))
         .collect();
-    let in_single = halves
-        .iter()
-        .map(|(p, r, h)| f64::from(single::frustum(*p, *r, *h)));
-    let off = |found: Vec<f64>| {
-        let both = found.iter().zip(balls);
-        both.map(|(d, ball)| (d - ball.distance).abs())
-            .collect::<Vec<f64>>()
-    };
-    let in_double = balls
-        .iter()
-        .map(|b| double::frustum(b.point, b.radii, b.half));
-    let errors = [off(in_single.collect()), off(in_double.collect())];
-    let tasks: [Task; 2] = [
-        Box::new(move || {
-            for (point, radii, half) in &halves {
-                black_box(single::frustum(black_box(*point), *radii, *half));
-            }
-            halves.len() as u64
-        }),
-        Box::new(move || {
-            for ball in balls {
-                black_box(double::frustum(
-                    black_box(ball.point),
-                    ball.radii,
-                    ball.half,
-                ));
-            }
-            balls.len() as u64
-        }),
-    ];
-    (errors, tasks)
+    let in_single = |(p, r, h): &(Vec3, [f32; 2], f32)| f64::from(single::frustum(*p, *r, *h));
+    let in_double = |b: &Ball| double::frustum(b.point, b.radii, b.half);
+    let off = |(found, ball): (f64, &Ball)| (found - ball.distance).abs();
+    let singles = halves.iter().map(in_single).zip(balls).map(off).collect();
+    let doubles = balls.iter().map(in_double).zip(balls).map(off).collect();
+    (
+        [singles, doubles],
+        [each(halves, in_single), each(balls, in_double)],
+    )
 }
 
 fn flight(index: usize) -> [DVec3; 2] {
@@ -290,31 +251,18 @@ fn fly(flights: &[[DVec3; 2]]) -> Both<'_> {
         *from + *velocity * time + DVec3::NEG_Y * (0.5 * G * time * time)
     };
     let halves: Vec<_> = flights.iter().map(|f| f.map(|v| v.as_vec3())).collect();
-    let in_single = |[from, velocity]: &[glam::Vec3; 2]| {
-        single::flight(*from, *velocity, G as f32, DT as f32, STEPS)
-    };
+    let in_single =
+        |[from, velocity]: &[Vec3; 2]| single::flight(*from, *velocity, G as f32, DT as f32, STEPS);
     let in_double = |[from, velocity]: &[DVec3; 2]| double::flight(*from, *velocity, G, DT, STEPS);
-    let singles = halves
-        .iter()
-        .zip(flights)
-        .map(|(half, whole)| (in_single(half).as_dvec3() - end(whole)).length());
-    let doubles = flights.iter().map(|f| (in_double(f) - end(f)).length());
-    let errors = [singles.collect(), doubles.collect()];
-    let tasks: [Task; 2] = [
-        Box::new(move || {
-            for half in &halves {
-                black_box(in_single(black_box(half)));
-            }
-            halves.len() as u64
-        }),
-        Box::new(move || {
-            for flight in flights {
-                black_box(in_double(black_box(flight)));
-            }
-            flights.len() as u64
-        }),
-    ];
-    (errors, tasks)
+    let off = |(found, flight): (DVec3, &[DVec3; 2])| (found - end(flight)).length();
+    let singles = halves.iter().map(|half| in_single(half).as_dvec3());
+    let singles = singles.zip(flights).map(off).collect();
+    let doubles = flights.iter().map(in_double).zip(flights).map(off);
+    let doubles = doubles.collect();
+    (
+        [singles, doubles],
+        [each(halves, in_single), each(flights, in_double)],
+    )
 }
 
 /// An impact whose answer is known because the bodies are balls: the compliance is a diagonal in the contact's frame.
@@ -358,30 +306,15 @@ fn impulses(hits: &[Hit]) -> Both<'_> {
         .iter()
         .map(|h| (h.normal.as_vec3(), h.slip.as_vec3(), h.k.as_mat3()))
         .collect();
-    let in_single = move |(n, dv, k): &(glam::Vec3, glam::Vec3, glam::Mat3)| {
-        single::impulse(*n, *dv, *k, e as f32, mu as f32)
-    };
+    let in_single =
+        move |(n, dv, k): &(Vec3, Vec3, Mat3)| single::impulse(*n, *dv, *k, e as f32, mu as f32);
     let in_double = move |h: &Hit| double::impulse(h.normal, h.slip, h.k, e, mu);
-    let off = |found: DVec3, hit: &Hit| (found - hit.truth).length() / hit.truth.length();
-    let singles = halves
-        .iter()
-        .zip(hits)
-        .map(|(half, hit)| off(in_single(half).as_dvec3(), hit));
-    let doubles = hits.iter().map(|hit| off(in_double(hit), hit));
-    let errors = [singles.collect(), doubles.collect()];
-    let tasks: [Task; 2] = [
-        Box::new(move || {
-            for half in &halves {
-                black_box(in_single(black_box(half)));
-            }
-            halves.len() as u64
-        }),
-        Box::new(move || {
-            for hit in hits {
-                black_box(in_double(black_box(hit)));
-            }
-            hits.len() as u64
-        }),
-    ];
-    (errors, tasks)
+    let off = |(found, hit): (DVec3, &Hit)| (found - hit.truth).length() / hit.truth.length();
+    let singles = halves.iter().map(|half| in_single(half).as_dvec3());
+    let singles = singles.zip(hits).map(off).collect();
+    let doubles = hits.iter().map(in_double).zip(hits).map(off).collect();
+    (
+        [singles, doubles],
+        [each(halves, in_single), each(hits, in_double)],
+    )
 }

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use physics::{BodyId, Compound, Response, World};
 
+use super::report::{Reference, p95};
 use super::timing::Time;
 use crate::hard_cases::scene::{
     BALL_RADIUS, Setup, add_alley, add_rack, between, run, throw, tilt,
@@ -58,8 +59,51 @@ impl Rack {
     }
 }
 
+/// Distributions of several settings beside a reference that is itself compared with other throws.
+pub struct Comparison {
+    /// One for each setting, in their order.
+    pub samples: Vec<Fallen>,
+    /// What they are compared with.
+    pub reference: Fallen,
+    /// What 95 of 100 pairs of such samples stay below [pins].
+    pub noise: f64,
+    /// The reference beside other throws of the same setting.
+    pub check: Reference,
+}
+
+/// Throws at every setting, and twice at the `reference`, which `name` names, with seeds of their own.
+pub fn compare(
+    mut racks: Vec<Rack>,
+    reference: &Rack,
+    name: &str,
+    throws: u64,
+    noise_seed: u64,
+) -> Comparison {
+    racks.extend([2, 3].map(|seed| Rack {
+        seed,
+        ..reference.clone()
+    }));
+    let mut samples = fallen(&racks, throws);
+    let other = samples.pop().expect("it was put in");
+    let reference = samples.pop().expect("it was put in");
+    let noise = reference.noise(noise_seed);
+    let check = Reference {
+        truth: format!("fallen pins of {throws} throws {name}"),
+        other: "as many other throws".to_owned(),
+        difference: reference.distance(&other),
+        allowed: 2.0 * noise,
+        unit: "pins",
+    };
+    Comparison {
+        samples,
+        reference,
+        noise,
+        check,
+    }
+}
+
 /// Throws at every setting, all settings in turns on all cores.
-pub fn fallen(racks: &[Rack], throws: u64) -> Vec<Fallen> {
+fn fallen(racks: &[Rack], throws: u64) -> Vec<Fallen> {
     let prepared: Vec<(Setup, World, Vec<BodyId>)> = racks.iter().map(Rack::prepared).collect();
     let settings = racks.len() as u64;
     let work = |piece: u64| {
@@ -153,7 +197,7 @@ impl Fallen {
             let mut random = SplitMix64::for_index(seed, draw);
             apart(&drawn(&mut random), &drawn(&mut random))
         });
-        super::report::p95(draws.collect())
+        p95(draws.collect())
     }
 }
 

@@ -9,7 +9,7 @@ use physics::response::{Coefficients, compliance, impulse};
 use super::budget::Budget;
 use super::racks::{self, Rack};
 use super::report::{Line, Measure, Point, Reference, Report, largest, share_below};
-use super::timing::{Task, in_turns};
+use super::timing::{each, in_turns};
 use crate::hard_cases::scene::{MODELS, between, composite_pin, direction, rotation, vector};
 use crate::random::SplitMix64;
 
@@ -153,15 +153,7 @@ fn impacts(report: &mut Report, budget: &Budget) {
         .iter()
         .map(|m| answer(Response::Coulomb, m))
         .collect();
-    let tasks = MODELS.map(|response| -> Task {
-        let meetings = &meetings;
-        Box::new(move || {
-            for meeting in meetings {
-                std::hint::black_box(answer(response, std::hint::black_box(meeting)));
-            }
-            meetings.len() as u64
-        })
-    });
+    let tasks = MODELS.map(|response| each(&meetings[..], move |m| answer(response, m)));
     let times = in_turns(budget.rounds, &mut Vec::from(tasks));
     let mut line = Line::new("random impacts", "impacts", MEASURES.len(), "impact");
     for (index, (response, time)) in MODELS.into_iter().zip(times).enumerate() {
@@ -197,18 +189,17 @@ fn impacts(report: &mut Report, budget: &Budget) {
 
 fn throws(report: &mut Report, budget: &Budget) {
     let pin = composite_pin();
-    let rack = |response, seed| Rack {
+    let rack = |response| Rack {
         response,
         step_hz: 720.0,
         contact: contact(response),
         pin: Arc::clone(&pin),
-        seed,
+        seed: 1,
     };
-    let mut racks: Vec<Rack> = MODELS.iter().map(|response| rack(*response, 1)).collect();
-    racks.extend([rack(Response::Coulomb, 2), rack(Response::Coulomb, 3)]);
-    let all = racks::fallen(&racks, budget.throws);
-    let (reference, other) = (&all[MODELS.len()], &all[MODELS.len() + 1]);
-    let noise = reference.noise(7);
+    let coulomb = rack(Response::Coulomb);
+    let racks = MODELS.map(rack).to_vec();
+    let compared = racks::compare(racks, &coulomb, "under coulomb", budget.throws, 7);
+    let (all, reference, noise) = (&compared.samples, &compared.reference, compared.noise);
     let mut line = Line::new(
         "jittered throws",
         "throws",
@@ -216,7 +207,7 @@ fn throws(report: &mut Report, budget: &Budget) {
         "simulated second",
     );
     line.floors[2] = noise;
-    for (index, (response, fallen)) in MODELS.into_iter().zip(&all).enumerate() {
+    for (index, (response, fallen)) in MODELS.into_iter().zip(all).enumerate() {
         let mut errors = vec![f64::INFINITY; MEASURES.len()];
         errors[2] = fallen.distance(reference);
         line.points.push(Point {
@@ -228,16 +219,10 @@ fn throws(report: &mut Report, budget: &Budget) {
             step_hz: Some(720.0),
         });
     }
-    report.references.push(Reference {
-        truth: format!("fallen pins of {} throws under coulomb", budget.throws),
-        other: "as many other throws".to_owned(),
-        difference: reference.distance(other),
-        allowed: 2.0 * noise,
-        unit: "pins",
-    });
+    report.references.push(compared.check);
     let means: Vec<String> = MODELS
         .iter()
-        .zip(&all)
+        .zip(all)
         .map(|(response, fallen)| format!("{} {:.2}", name(*response), fallen.mean()))
         .collect();
     report.findings.push(format!(

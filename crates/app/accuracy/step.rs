@@ -10,7 +10,7 @@ use super::profile::Profile;
 use super::racks::{self, Rack};
 use super::report::{Line, Measure, Point, Reason, Reference, Report, p95};
 use super::slide;
-use super::timing::{Task, Time, in_turns};
+use super::timing::{Task, Time, each, in_turns};
 use crate::hard_cases::scene::{Setup, add_alley, add_rack, close_alley, composite_pin, throw};
 
 pub const NAME: &str = "step";
@@ -97,12 +97,9 @@ pub fn time_hits(
         .iter()
         .map(|how| (*how, hits::world(*how, pin)))
         .collect();
-    let tasks = worlds.iter().map(|(how, (world, id))| -> Task {
-        Box::new(move || {
-            for throw in throws {
-                std::hint::black_box(hits::simulated(world, *id, *how, throw));
-            }
-            throws.len() as u64
+    let tasks = worlds.iter().map(|(how, (world, id))| {
+        each(throws, move |throw| {
+            hits::simulated(world, *id, *how, throw)
         })
     });
     let times = in_turns(rounds, &mut tasks.collect::<Vec<_>>());
@@ -247,20 +244,17 @@ fn energy(report: &mut Report, budget: &Budget) {
 }
 
 fn fallen(report: &mut Report, budget: &Budget) {
-    let rack = |step_hz, seed| Rack {
+    let racks = RATES.map(|step_hz| Rack {
         response: Response::Guarded,
         step_hz,
         contact: (0.49, 0.49),
         pin: composite_pin(),
-        seed,
-    };
-    let mut racks: Vec<Rack> = RATES.iter().map(|hz| rack(*hz, 1)).collect();
-    // The reference, and the same with other throws.
-    let finest = RATES[RATES.len() - 1];
-    racks.extend([rack(finest, 2), rack(finest, 3)]);
-    let all = racks::fallen(&racks, budget.throws);
-    let (reference, other) = (&all[RATES.len()], &all[RATES.len() + 1]);
-    let noise = reference.noise(5);
+        seed: 1,
+    });
+    let finest = &racks[RATES.len() - 1];
+    let name = "at the finest step";
+    let compared = racks::compare(racks.to_vec(), finest, name, budget.throws, 5);
+    let (all, reference, noise) = (&compared.samples, &compared.reference, compared.noise);
     let mut line = Line::new(
         "guarded",
         "jittered throws",
@@ -272,21 +266,16 @@ fn fallen(report: &mut Report, budget: &Budget) {
         2.0 * noise,
         "the scatter of samples of this size, not the step",
     ));
-    for (hz, fallen) in RATES.into_iter().zip(&all) {
+    for (hz, fallen) in RATES.into_iter().zip(all) {
         let error = fallen.distance(reference);
         line.points
             .push(point(hz, MEASURES.len(), 3, error, fallen.time));
     }
-    report.references.push(Reference {
-        truth: format!("fallen pins of {} throws at the finest step", budget.throws),
-        other: "as many other throws".to_owned(),
-        difference: reference.distance(other),
-        allowed: 2.0 * noise,
-        unit: "pins",
-    });
+    report.references.push(compared.check);
     report.findings.push(format!(
-        "fallen pins at 1/60 s are {:.3} pins from those at 1/{finest} s, where two samples of {} throws differ by up to {noise:.3}; means {:.2} and {:.2}",
+        "fallen pins at 1/60 s are {:.3} pins from those at 1/{} s, where two samples of {} throws differ by up to {noise:.3}; means {:.2} and {:.2}",
         line.points[0].errors[3],
+        finest.step_hz,
         budget.throws,
         all[0].mean(),
         reference.mean()

@@ -1,5 +1,8 @@
 //! Times of several settings in turns, so that the machine's moods strike all of them alike.
 
+use std::hint::black_box;
+use std::ops::Deref;
+
 use crate::shot::clock::thread_seconds;
 
 /// Processor time per piece of work [ns]: median of the rounds, and the quartiles about it.
@@ -41,6 +44,19 @@ impl Time {
             high: self.high / much,
         }
     }
+}
+
+/// Work on each of `inputs`, a piece each; nothing that `work` returns is optimised away.
+pub fn each<'a, I: 'a, R>(
+    inputs: impl Deref<Target = [I]> + 'a,
+    work: impl Fn(&I) -> R + 'a,
+) -> Task<'a> {
+    Box::new(move || {
+        for input in inputs.iter() {
+            black_box(work(black_box(input)));
+        }
+        inputs.len() as u64
+    })
 }
 
 /// Does all tasks once a round, and every other round backwards; the first round only warms up.

@@ -1,7 +1,5 @@
 //! The update of the normal: first order by reflection, as in Chung and Wang 1996, against second order.
 
-use std::hint::black_box;
-
 use physics::query::{self, Limits};
 
 use super::budget::Budget;
@@ -9,7 +7,7 @@ use super::oracle;
 use super::poses::{self, CLASSES, Case};
 use super::reflection;
 use super::report::{Line, Measure, Point, Reason, Reference, Report, largest};
-use super::timing::{Task, in_turns};
+use super::timing::{Task, each, in_turns};
 
 pub const NAME: &str = "update";
 
@@ -104,12 +102,7 @@ fn line(method: Method, panel: &str, cases: &[Case], budget: &Budget) -> Line {
     }
     let mut tasks: Vec<Task> = Vec::new();
     for cap in 1..=MOST {
-        tasks.push(Box::new(move || {
-            for case in cases {
-                black_box(method.proves(black_box(case), cap));
-            }
-            cases.len() as u64
-        }));
+        tasks.push(each(cases, move |case| method.proves(case, cap)));
     }
     let times = in_turns(budget.rounds, &mut tasks);
     for (cap, time) in (1..=MOST).zip(times) {
