@@ -25,7 +25,8 @@ use crate::world::World;
 
 /// Depth that a lasting contact keeps [m]; deeper ones are pushed out slowly.
 const SLOP: f64 = 5e-7;
-/// Speed at which an overlap of bodies that do not turn is opened [m/s]: lifting all pins that fast for a step of 1/60 s takes 1e-5 of a ball's energy.
+/// Speed at which an overlap of bodies that do not turn is opened [m/s]: lifting all pins that fast for a step of 1/60 s
+/// takes 1e-5 of a ball's energy.
 const PUSH: f64 = 1e-3;
 /// Points of a contact nearer to each other than this from one step to the next are the same [m].
 const SAME: f64 = 0.01;
@@ -248,11 +249,13 @@ impl World {
                     touch.set_point(patch.spots()[i].point, &self.bodies);
                 }
                 let allowed = self.allowed_approach(&touch, span);
-                let mut row = Row::new(touch, numbers, &room.movers, allowed, friction);
-                if points == 1 && touch.chord != DVec3::ZERO {
+                if points > 1 {
+                    touch.chord = DVec3::ZERO;
+                } else if touch.chord != DVec3::ZERO {
                     // What is elastic gives back what the chord's foremost end takes.
-                    row.chord = touch.chord * (1.0 - self.elasticity_of(&touch));
+                    touch.chord *= 1.0 - self.elasticity_of(&touch);
                 }
+                let mut row = Row::new(touch, numbers, &room.movers, allowed, friction);
                 let near = |load: &&Load| load.point.distance_squared(touch.point) < SAME * SAME;
                 if let Some(load) = loads.iter().flatten().find(near) {
                     row.expect(*load, 0.5 * span);

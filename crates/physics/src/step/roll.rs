@@ -10,7 +10,7 @@ use super::row::{Mover, Row};
 impl Row {
     /// Whether anything resists rolling here, `arm` [m] being the rolling resistance of the scene.
     pub fn resists(&self, arm: Option<f64>) -> bool {
-        arm.is_some() || self.chord != DVec3::ZERO
+        arm.is_some() || self.touch.chord != DVec3::ZERO
     }
 
     /// Rolling resistance at one contact, with `arm` [m].
@@ -35,11 +35,11 @@ impl Row {
     /// It stands on a chord of its rim, and circling tips it over the chord's foremost end. Rocking tips it about the chord,
     /// which costs nothing before the base is flat. A point would let a pin circle for ever.
     pub fn circle(&self, all: &mut [Mover]) -> Option<f64> {
-        let arm = self.chord.length();
+        let arm = self.touch.chord.length();
         if arm == 0.0 {
             return None;
         }
-        let axis = self.chord / arm;
+        let axis = self.touch.chord / arm;
         let rate = axis.dot(self.turning(all));
         self.brake_about(axis * rate.signum(), rate.abs(), arm, all)
     }

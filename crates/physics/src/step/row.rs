@@ -79,8 +79,6 @@ pub(crate) struct Row {
     /// Approach that is allowed [m/s]: a gap may close in the stretch, an overlap must open.
     pub allowed: f64,
     pub friction: Friction,
-    /// Half the chord on which a tilted base resists circling [m], as a vector to where it stands.
-    pub chord: DVec3,
     /// `K`, and how a normal impulse of 1 N s turns the two bodies.
     k: DMat3,
     stiffness: f64,
@@ -116,7 +114,6 @@ impl Row {
             movers,
             allowed,
             friction,
-            chord: DVec3::ZERO,
             k: DMat3::ZERO,
             stiffness: 0.0,
             levers: zero,

@@ -15,7 +15,7 @@ use crate::body::Body;
 use crate::response::Response;
 use crate::world::Settings;
 
-/// Most passes over the normals of a group; over normals and friction in a cone the settings say.
+/// Most passes over the normals of a group that slips; in a cone, and where a group creeps, the settings say.
 ///
 /// Passes that begin with nothing may end early, those that begin with loads must not: these may hold energy until the
 /// passes have come to terms. Stacks take a few hundred when something has changed, and then one or two a step.
@@ -69,8 +69,9 @@ pub(crate) struct Work {
 
 /// Answers a group of rows that share bodies, until no pass changes a velocity by more than enough.
 ///
-/// In a cone the passes begin with what the contacts carried last. Friction at a rate is given once and not corrected:
-/// there they begin with nothing, for what is given to wrong velocities could add energy.
+/// In a cone, and where a group creeps and no hand is part of it, the passes begin with what the contacts carried last.
+/// Elsewhere friction at a rate is given once and not corrected: there they begin with nothing, for what is given to
+/// wrong velocities could add energy.
 fn answer_group(rows: &mut [Row], all: &mut [Mover], bodies: &[Body], halves: &Halves) -> Work {
     let creeps = rows.len() > 1 && rows.iter().any(|row| row.creeps(all, halves.slow));
     let is_free = creeps && !rows.iter().any(|row| row.is_driven(all));

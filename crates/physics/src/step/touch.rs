@@ -16,7 +16,7 @@ use crate::world::World;
 /// Overlap in which the way out is looked for again, and not along the face that showed it last [m].
 const DEEP: f64 = 1e-3;
 
-/// Turning of a base that rocks and does not fall [rad/s]: a pin tips at 1.2 about its edge .
+/// Turning of a base that rocks and does not fall [rad/s]: a pin tips at 1.2 about its edge.
 const ROCKING: f64 = 2.0;
 
 /// A contact between two parts at the bodies' current poses.
@@ -36,8 +36,6 @@ pub(crate) struct Touch {
     pub patch: Option<Patch>,
     /// Whether it is a flat base, lying or a little tilted, on a flat face: friction then also takes the turn on it.
     pub on_base: bool,
-    /// Whether such a base rocks so gently that it does not fall.
-    pub rocks: bool,
     /// Half the chord on which a tilted base presses [m], as a vector along the face to where it stands.
     pub chord: DVec3,
 }
@@ -175,12 +173,12 @@ impl World {
             base,
             patch,
             on_base,
-            rocks: on_base && self.rocks(a) && self.rocks(b),
             chord: chord.unwrap_or(DVec3::ZERO),
         };
         touch.set_point((found.point_a + found.point_b) * 0.5, &self.bodies);
+        let rocks = on_base && self.rocks(a) && self.rocks(b);
         let known = self.pairs.part_mut(key);
-        (known.normal, known.rocks) = (found.normal, touch.rocks);
+        (known.normal, known.rocks) = (found.normal, rocks);
         self.pairs.remember(key, ways, touch);
         touch
     }
