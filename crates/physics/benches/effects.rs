@@ -14,8 +14,11 @@ use std::path::Path;
 use std::process::Command;
 
 use glam::DVec3;
-use physics::{Effect, Effects, OilPattern, PairContact, Pose, Response, Settings, World};
-use support::{BALL_RADIUS, Random, add_building, ball, composite_pin, hand, material, pin, spots};
+use physics::{Effect, Effects, OilPattern, Pose, Response, Settings, World};
+use support::{
+    BALL_RADIUS, Random, add_building, ball, composite_pin, every_effect, hand, material, pin,
+    spots,
+};
 
 const INTRODUCTION: &str = "\
 # Effects: what each costs
@@ -42,14 +45,7 @@ const THROWS: u32 = 16;
 fn settings(response: Response, effects: Effects) -> Settings {
     Settings {
         effects,
-        response,
-        rolling_resistance_m: 2e-4,
-        air_density_kgpm3: 1.2,
-        contact: PairContact {
-            restitution: 0.5,
-            friction: 0.2,
-        },
-        ..Settings::default()
+        ..every_effect(response)
     }
 }
 

@@ -5,7 +5,7 @@
 //! worlds, so that all numbers of lanes play the same mixture. The exponents are printed before criterion's times.
 #![allow(missing_docs, reason = "criterion's macros make undocumented items")]
 
-#[path = "step/clock.rs"]
+#[path = "../../app/shot/clock.rs"]
 mod clock;
 #[path = "lanes/growth.rs"]
 mod growth;

@@ -4,7 +4,7 @@
 //! slowest steps and many lanes against the targets, and writes docs/step.md. Without `report` criterion times a
 //! simulated second of each. `run MODEL RATE` is what runs under valgrind.
 
-#[path = "step/clock.rs"]
+#[path = "../../app/shot/clock.rs"]
 mod clock;
 #[path = "lanes/growth.rs"]
 mod growth;

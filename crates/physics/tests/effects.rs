@@ -11,21 +11,6 @@ use physics::{
 };
 use support::*;
 
-/// All effects, with a little of everything.
-fn settings(response: Response) -> Settings {
-    Settings {
-        effects: Effect::ALL.into_iter().collect(),
-        response,
-        rolling_resistance_m: 2e-4,
-        air_density_kgpm3: 1.2,
-        contact: PairContact {
-            restitution: 0.5,
-            friction: 0.2,
-        },
-        ..Settings::default()
-    }
-}
-
 /// Oil from the foul line to 12.192 m (40 ft), `factor` times the friction of the dry lane.
 fn oil(lane: &World, id: BodyId, factor: f64) -> OilPattern {
     let foul_line = -lane.body(id).pose().position.z;
@@ -70,7 +55,7 @@ fn work_of(settings: Settings) -> Counts {
 #[test]
 fn what_is_not_listed_does_no_work_in_a_whole_throw() {
     for response in [Response::UnoSlater, Response::Guarded, Response::Coulomb] {
-        let all = settings(response);
+        let all = every_effect(response);
         let full = work_of(all);
         for effect in Effect::ALL {
             assert!(full.of(effect) > 0, "{effect} listed, {response:?}");
@@ -92,7 +77,7 @@ fn what_nothing_calls_for_is_not_in_the_plan() {
     let weightless = Settings {
         gravity: DVec3::ZERO,
         rolling_resistance_m: 0.0,
-        ..settings(Response::Guarded)
+        ..every_effect(Response::Guarded)
     };
     let planned = |world: &World| -> Effects {
         world
@@ -121,7 +106,7 @@ fn what_nothing_calls_for_is_not_in_the_plan() {
             restitution: 0.0,
             friction: 0.0,
         },
-        ..settings(Response::Coulomb)
+        ..every_effect(Response::Coulomb)
     })
     .unwrap();
     world.add(ball(material(1.0, 1.0), DVec3::ZERO));
@@ -159,7 +144,7 @@ fn settings_that_no_air_and_no_floor_has_are_refused() {
 
 #[test]
 fn no_step_of_a_throw_raises_the_energy_whatever_is_left_out() {
-    let all = settings(Response::Guarded).effects;
+    let all = every_effect(Response::Guarded).effects;
     for response in [Response::UnoSlater, Response::Guarded, Response::Coulomb] {
         for left_out in Effect::ALL.map(Some).into_iter().chain([None]) {
             // Without a search in time bodies overlap, and are pushed apart.
@@ -169,7 +154,7 @@ fn no_step_of_a_throw_raises_the_energy_whatever_is_left_out() {
             let effects = left_out.map_or(all, |effect| all.without(effect));
             let (mut world, _) = throw_with_everything(Settings {
                 effects,
-                ..settings(response)
+                ..every_effect(response)
             });
             let start = world.energy();
             let mut before = start;
@@ -204,7 +189,7 @@ fn coulomb(friction: f64, extra: Effect) -> Settings {
             restitution: 0.5,
             friction,
         },
-        ..settings(Response::Coulomb)
+        ..every_effect(Response::Coulomb)
     }
 }
 
@@ -214,7 +199,7 @@ fn air_slows_a_free_body_exactly_whatever_the_step() {
         let mut world = World::new(Settings {
             step_hz,
             gravity: DVec3::ZERO,
-            ..settings(Response::Guarded)
+            ..every_effect(Response::Guarded)
         })
         .unwrap();
         let mut def = ball(material(0.5, 0.5), DVec3::ZERO);
@@ -239,7 +224,7 @@ fn a_falling_body_nears_its_terminal_speed_to_second_order() {
     let error = |step_hz: f64| {
         let mut world = World::new(Settings {
             step_hz,
-            ..settings(Response::Guarded)
+            ..every_effect(Response::Guarded)
         })
         .unwrap();
         let mut def = ball(material(0.5, 0.5), DVec3::ZERO);
@@ -276,7 +261,7 @@ fn a_rolling_ball_stops_where_the_arm_of_its_resistance_says() {
                 effects: Effects::default().with(Effect::RollingResistance),
                 rolling_resistance_m: arm,
                 step_hz,
-                ..settings(response)
+                ..every_effect(response)
             });
             let mut def = ball(material(0.7, 0.7), DVec3::Y * BALL_RADIUS);
             def.linear_velocity = DVec3::X * 1.5;
@@ -304,7 +289,7 @@ fn a_pin_that_rolls_on_its_side_comes_to_rest_and_sleeps() {
             let mut world = floor(Settings {
                 effects,
                 rolling_resistance_m: 5e-4,
-                ..settings(response)
+                ..every_effect(response)
             });
             let mut def = pin(&composite_pin(), material(0.7, 0.7), DVec3::ZERO);
             def.pose.position.y = 0.062;
@@ -418,7 +403,7 @@ fn a_puck_under_coulomb_slides_its_way_and_less_where_oil_ends() {
 fn what_does_not_turn_slides_and_keeps_its_orientation() {
     let mut world = floor(Settings {
         effects: coulomb(0.2, Effect::Oil).effects.without(Effect::Rotation),
-        ..settings(Response::Coulomb)
+        ..every_effect(Response::Coulomb)
     });
     let mut def = ball(material(1.0, 1.0), DVec3::Y * BALL_RADIUS);
     (def.linear_velocity, def.angular_velocity) = (DVec3::X, DVec3::ONE);
@@ -437,7 +422,7 @@ fn without_the_gyroscopic_term_a_free_body_keeps_its_angular_velocity() {
     let mut world = World::new(Settings {
         gravity: DVec3::ZERO,
         effects: Effects::default().without(Effect::Gyroscopic),
-        ..settings(Response::Guarded)
+        ..every_effect(Response::Guarded)
     })
     .unwrap();
     for inertia in [DVec3::new(1e-2, 2e-2, 3e-2), DVec3::new(1e-2, 2e-3, 1e-2)] {
@@ -464,7 +449,7 @@ fn without_a_search_in_time_a_fast_ball_passes_a_pin_between_two_ticks() {
             effects,
             gravity: DVec3::ZERO,
             step_hz: 60.0,
-            ..settings(Response::Guarded)
+            ..every_effect(Response::Guarded)
         })
         .unwrap();
         let m = material(0.7, 0.0);
@@ -485,7 +470,7 @@ fn without_a_search_in_time_a_fast_ball_passes_a_pin_between_two_ticks() {
 fn without_a_search_in_time_a_ball_still_lies_on_the_floor() {
     let mut world = floor(Settings {
         effects: Effects::default().without(Effect::Continuous),
-        ..settings(Response::Guarded)
+        ..every_effect(Response::Guarded)
     });
     let id = world.add(ball(material(0.7, 0.7), DVec3::Y));
     for _ in 0..720 * 4 {
@@ -501,7 +486,7 @@ fn without_a_hand_driven_bodies_pass_through_and_let_go() {
     for listed in [true, false] {
         let mut world = floor(Settings {
             effects: Effects::default().set(Effect::Hand, listed),
-            ..settings(Response::Guarded)
+            ..every_effect(Response::Guarded)
         });
         let m = material(0.7, 0.7);
         let id = world.add(pin(&composite_pin(), m, DVec3::ZERO));

@@ -5,13 +5,8 @@
 
 mod support;
 
-use std::sync::Arc;
-
 use glam::{DQuat, DVec3};
-use physics::{
-    BodyDef, BodyId, Compound, MassProperties, Motion, PairContact, Pose, Response, Settings,
-    Shape, World,
-};
+use physics::{BodyDef, BodyId, PairContact, Pose, Response, Settings, Shape, World};
 use support::*;
 
 /// Model, step rate [1/s], and the hash of all states at whole seconds.
@@ -44,20 +39,7 @@ struct Scene {
 
 /// A body of one part at rest on the approach, beyond the reach of the throws.
 fn thing(shape: Shape, inertia: DVec3, pose: Pose) -> BodyDef {
-    let mass = 1.2;
-    BodyDef {
-        compound: Arc::new(Compound::single(shape)),
-        motion: Motion::Dynamic,
-        mass: MassProperties {
-            mass,
-            inertia: inertia * mass,
-        },
-        material: material(0.6, 0.8),
-        pose,
-        linear_velocity: DVec3::ZERO,
-        angular_velocity: DVec3::ZERO,
-        drag_area_m2: 0.0,
-    }
+    solid(shape, 1.2, inertia, material(0.6, 0.8), pose)
 }
 
 /// Three cubes on each other, a cylinder that rolls between the walls, and a pin that rocks.

@@ -2,12 +2,9 @@
 
 mod support;
 
-use std::sync::Arc;
-
 use glam::{DQuat, DVec3};
 use physics::{
-    BodyDef, BodyId, Compound, Effect, Effects, MassProperties, Motion, PairContact, Pose,
-    Response, Settings, Shape, World,
+    BodyDef, BodyId, Effect, Effects, PairContact, Pose, Response, Settings, Shape, World,
 };
 use support::*;
 
@@ -35,19 +32,7 @@ fn world(friction: f64) -> World {
 }
 
 fn body(shape: Shape, mass: f64, inertia: DVec3, pose: Pose) -> BodyDef {
-    BodyDef {
-        compound: Arc::new(Compound::single(shape)),
-        motion: Motion::Dynamic,
-        mass: MassProperties {
-            mass,
-            inertia: inertia * mass,
-        },
-        material: material(0.0, 0.5),
-        pose,
-        linear_velocity: DVec3::ZERO,
-        angular_velocity: DVec3::ZERO,
-        drag_area_m2: 0.0,
-    }
+    solid(shape, mass, inertia, material(0.0, 0.5), pose)
 }
 
 fn cube(side: f64, mass: f64, at: DVec3) -> BodyDef {

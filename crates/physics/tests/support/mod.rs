@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
 use physics::{
-    BodyDef, BodyId, Compound, MassProperties, Material, Motion, Pose, Settings, Shape, Surface,
-    World,
+    BodyDef, BodyId, Compound, Effect, MassProperties, Material, Motion, PairContact, Pose,
+    Response, Settings, Shape, Surface, World,
 };
 
 /// Height of the pin's centre of mass above its base [m].
@@ -49,6 +49,21 @@ pub fn ellipsoid_pin() -> Arc<Compound> {
     Arc::new(Compound::new(vec![(up(tall * ratio), shape)]).expect("fixture sizes are positive"))
 }
 
+/// Settings with all effects, each with a value that acts.
+pub fn every_effect(response: Response) -> Settings {
+    Settings {
+        effects: Effect::ALL.into_iter().collect(),
+        response,
+        rolling_resistance_m: 2e-4,
+        air_density_kgpm3: 1.2,
+        contact: PairContact {
+            restitution: 0.5,
+            friction: 0.2,
+        },
+        ..Settings::default()
+    }
+}
+
 pub fn material(elasticity: f64, friction_rate: f64) -> Material {
     Material {
         elasticity,
@@ -83,6 +98,19 @@ fn def(
         linear_velocity: DVec3::ZERO,
         angular_velocity: DVec3::ZERO,
         drag_area_m2: 0.0,
+    }
+}
+
+/// A body of one shape, with its moments of inertia per mass [m2].
+pub fn solid(shape: Shape, mass: f64, inertia: DVec3, material: Material, pose: Pose) -> BodyDef {
+    let compound = Arc::new(Compound::single(shape));
+    let mass = MassProperties {
+        mass,
+        inertia: inertia * mass,
+    };
+    BodyDef {
+        pose,
+        ..def(compound, Motion::Dynamic, mass, material, DVec3::ZERO)
     }
 }
 

@@ -4,13 +4,15 @@ use super::*;
 use crate::body::Spin;
 use crate::oil::OilPattern;
 use crate::pose::Pose;
-use crate::surface::PairContact;
 use crate::world::{BodyId, World};
 
 #[path = "../../../tests/support/mod.rs"]
 mod support;
 
-use support::{BALL_RADIUS, add_building, ball, composite_pin, ellipsoid_pin, hand, material, pin};
+use support::{
+    BALL_RADIUS, add_building, ball, composite_pin, ellipsoid_pin, every_effect, hand, material,
+    pin,
+};
 
 /// So small that it changes nothing, and not zero, so that the effect is in the plan.
 const TINY: f64 = 1e-100;
@@ -81,21 +83,6 @@ fn coefficients_come_from_the_table_under_coulomb_alone() {
     }
 }
 
-/// All effects, each with a value that acts.
-fn settings(response: Response) -> Settings {
-    Settings {
-        effects: Effect::ALL.into_iter().collect(),
-        response,
-        rolling_resistance_m: 2e-4,
-        air_density_kgpm3: 1.2,
-        contact: PairContact {
-            restitution: 0.5,
-            friction: 0.2,
-        },
-        ..Settings::default()
-    }
-}
-
 /// Where a hand is out of reach.
 fn far_away() -> Pose {
     Pose::from_position(DVec3::new(0.0, 50.0, 100.0))
@@ -111,7 +98,7 @@ struct Throw {
 impl Throw {
     fn new(response: Response, is_ellipsoid: bool) -> Throw {
         let m = material(0.7, 0.7);
-        let mut world = World::new(settings(response)).unwrap();
+        let mut world = World::new(every_effect(response)).unwrap();
         let lane = add_building(&mut world, m)[0];
         let oil = OilPattern::new([-1.0, 12.0], [1.0, -12.0], [2, 2], vec![0.2, 0.3, 1.0, 0.9]);
         world.set_oil(lane, oil.unwrap());
