@@ -129,6 +129,13 @@ pub fn known_dial(name: &str) -> Result<String, String> {
     ))
 }
 
+/// The dial of that name, or all of them.
+fn chosen(only: Option<&str>) -> impl Iterator<Item = &'static Dial> {
+    DIALS
+        .iter()
+        .filter(move |dial| only.is_none_or(|name| name == dial.name))
+}
+
 /// Measures one dial or all of them.
 ///
 /// `done` is called after each.
@@ -140,10 +147,7 @@ pub fn reports(
     only: Option<&str>,
     mut done: impl FnMut(&Report, u64),
 ) -> Vec<Report> {
-    let dials = DIALS
-        .iter()
-        .filter(|dial| only.is_none_or(|name| name == dial.name));
-    let reports = dials.map(|dial| {
+    let reports = chosen(only).map(|dial| {
         let report = (dial.measure)(budget);
         done(&report, dial.share);
         report
@@ -213,10 +217,7 @@ pub fn accuracy(arguments: &AccuracyArguments, root: &Path) -> Result<()> {
 
 /// A bar on the error stream, which shows nothing where that is no terminal.
 fn progress(only: Option<&str>) -> ProgressBar {
-    let dials = DIALS
-        .iter()
-        .filter(|dial| only.is_none_or(|name| name == dial.name));
-    let bar = ProgressBar::new(dials.map(|dial| dial.share).sum());
+    let bar = ProgressBar::new(chosen(only).map(|dial| dial.share).sum());
     let style =
         ProgressStyle::with_template("{elapsed_precise} {wide_bar} {percent} %  after {msg}");
     bar.with_style(style.expect("the template is one"))
