@@ -68,7 +68,7 @@ fn plan(scene: &str, world: &World) -> String {
 
 /// One effect's line.
 fn row(config: &Config, bench: &Bench, effect: Effect) -> Result<String> {
-    let name = EffectName::from(effect);
+    let name = EffectName(effect);
     let is_listed = config.physics.effects.contains(&name);
     let set = |is_listed: bool| {
         let mut config = config.clone();

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use anyhow::Result;
 use game::{BareAlley, Config, EffectName, ObjectShape, ResponseModel};
+use physics::Effect;
 
 use crate::args::{ModelChoice, ShapeChoice, ThrowArguments, unusable};
 
@@ -48,7 +49,7 @@ fn config(arguments: &ThrowArguments, root: &Path) -> Result<Config> {
     config.physics.step_hz = arguments.frame_rate;
     if arguments.no_sleep {
         let effects = &mut config.physics.effects;
-        effects.retain(|effect| *effect != EffectName::Sleeping);
+        effects.retain(|effect| *effect != EffectName(Effect::Sleeping));
     }
     let objects = &mut config.objects;
     objects.elasticity = arguments.elasticity.unwrap_or(objects.elasticity);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 use physics::{
-    BodyDef, BodyId, Compound, MassProperties, Material, Motion, Pose, Response, Settings,
+    BodyDef, BodyId, Compound, Effect, MassProperties, Material, Motion, Pose, Response, Settings,
     SettingsError, Shape, ShapeError, Surface, World,
 };
 
@@ -30,7 +30,7 @@ pub(crate) fn world(config: &Config) -> Result<World, SettingsError> {
         },
         iteration_cap: physics.iteration_cap,
         friction_reference_s: physics.friction_reference_s,
-        effects: physics.effects.iter().map(|name| name.effect()).collect(),
+        effects: physics.effects.iter().map(|name| name.0).collect(),
         rolling_resistance_m: physics.rolling_resistance_m,
         air_density_kgpm3: physics.air_density_kgpm3,
         contact: config.coulomb.other.contact(),
@@ -88,7 +88,7 @@ pub(crate) fn add_part(
     };
     let (motion, mass) = (Motion::Fixed, immovable());
     let id = world.add(body(config, surface, compound, motion, mass, part.pose));
-    if part.model == Model::Lane && config.physics.effects.contains(&EffectName::Oil) {
+    if part.model == Model::Lane && config.physics.effects.contains(&EffectName(Effect::Oil)) {
         // The lane's box is upright, and its middle lies behind or before the foul line.
         let foul_line = -part.pose.position.z;
         world.set_oil(id, config.oil.pattern(config.lane.width_m, foul_line)?);

@@ -63,7 +63,7 @@ impl Effect {
     ];
 
     /// Its name in configurations.
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             Effect::Gravity => "gravity",
             Effect::Elasticity => "elasticity",

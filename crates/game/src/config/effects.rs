@@ -1,73 +1,41 @@
 //! Settings of what a scene calls for, and of the effects that need numbers of their own.
 
 use physics::{Effect, OilPattern};
-use serde::{Deserialize, Serialize};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// Distance between the nodes of the oil's grid [m], about.
 const NODE: f64 = 0.05;
 
 /// An effect by its name in a scene; what a scene does not list executes nothing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum EffectName {
-    /// Weight.
-    Gravity,
-    /// Impacts that give approach speed back.
-    Elasticity,
-    /// Impulses across the normal.
-    Friction,
-    /// Turning.
-    Rotation,
-    /// Precession and tumbling of bodies with unequal moments of inertia.
-    Gyroscopic,
-    /// Contacts found when they come about, inside a step.
-    Continuous,
-    /// Bodies at rest are skipped until something touches them.
-    Sleeping,
-    /// Friction that varies down and across the lane.
-    Oil,
-    /// A torque against rolling.
-    RollingResistance,
-    /// Resistance of the air.
-    Drag,
-    /// Contact with the hand and the pinsetter's bar.
-    Hand,
-}
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct EffectName(pub Effect);
 
-impl EffectName {
-    /// As physics takes it.
-    pub(crate) fn effect(self) -> Effect {
-        match self {
-            Self::Gravity => Effect::Gravity,
-            Self::Elasticity => Effect::Elasticity,
-            Self::Friction => Effect::Friction,
-            Self::Rotation => Effect::Rotation,
-            Self::Gyroscopic => Effect::Gyroscopic,
-            Self::Continuous => Effect::Continuous,
-            Self::Sleeping => Effect::Sleeping,
-            Self::Oil => Effect::Oil,
-            Self::RollingResistance => Effect::RollingResistance,
-            Self::Drag => Effect::Drag,
-            Self::Hand => Effect::Hand,
-        }
+/// The names of all effects.
+const NAMES: [&str; Effect::ALL.len()] = {
+    let mut names = [""; Effect::ALL.len()];
+    let mut i = 0;
+    while i < names.len() {
+        names[i] = Effect::ALL[i].name();
+        i += 1;
+    }
+    names
+};
+
+impl Serialize for EffectName {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.0.name())
     }
 }
 
-impl From<Effect> for EffectName {
-    fn from(effect: Effect) -> Self {
-        match effect {
-            Effect::Gravity => Self::Gravity,
-            Effect::Elasticity => Self::Elasticity,
-            Effect::Friction => Self::Friction,
-            Effect::Rotation => Self::Rotation,
-            Effect::Gyroscopic => Self::Gyroscopic,
-            Effect::Continuous => Self::Continuous,
-            Effect::Sleeping => Self::Sleeping,
-            Effect::Oil => Self::Oil,
-            Effect::RollingResistance => Self::RollingResistance,
-            Effect::Drag => Self::Drag,
-            Effect::Hand => Self::Hand,
-        }
+impl<'de> Deserialize<'de> for EffectName {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let name = String::deserialize(deserializer)?;
+        let effect = Effect::from_name(&name);
+        effect.map_or_else(
+            || Err(D::Error::unknown_variant(&name, &NAMES)),
+            |effect| Ok(EffectName(effect)),
+        )
     }
 }
 
@@ -129,10 +97,10 @@ mod tests {
     #[test]
     fn names_are_those_of_physics() {
         for effect in Effect::ALL {
-            let name = EffectName::from(effect);
-            assert_eq!(name.effect(), effect);
-            let text = serde_json::to_value(name).unwrap();
+            let text = serde_json::to_value(EffectName(effect)).unwrap();
             assert_eq!(text, effect.name());
+            let name: EffectName = serde_json::from_value(text).unwrap();
+            assert_eq!(name.0, effect);
         }
     }
 
