@@ -72,8 +72,13 @@ pub(super) fn outside(shape: &Placed, point: DVec3) -> Option<(f64, DVec3)> {
         Kind::Sphere { radius } => from_point(q, *radius),
         Kind::Capsule { radius, segment } => {
             let axis = shape.rotation.y_axis;
-            let along = q.dot(axis).clamp(segment.height[0], segment.height[1]);
-            from_point(q - axis * along, *radius)
+            let along = q.dot(axis);
+            let clamped = along.clamp(segment.height[0], segment.height[1]);
+            if clamped == along {
+                from_point(square_to(axis, q - axis * along), *radius)
+            } else {
+                from_point(q - axis * clamped, *radius)
+            }
         }
         Kind::Cuboid { half } => {
             let (distance, normal) = from_box(shape.local(q), *half);
@@ -116,6 +121,13 @@ fn from_box(q: DVec3, half: DVec3) -> (f64, DVec3) {
     (nearest, axis * axis.dot(q.signum()))
 }
 
+/// `across` without what rounding has left along the axis: of a short way that would be an angle, off which a whole
+/// mantle stands out.
+#[inline]
+fn square_to(axis: DVec3, across: DVec3) -> DVec3 {
+    across - axis * axis.dot(across)
+}
+
 /// Distance from a frustum about the origin, in the plane of its axis and the point: the outline is a trapezium.
 #[inline]
 fn from_frustum(q: DVec3, axis: DVec3, profile: &Profile) -> (f64, DVec3) {
@@ -126,7 +138,7 @@ fn from_frustum(q: DVec3, axis: DVec3, profile: &Profile) -> (f64, DVec3) {
         slant,
     } = *profile;
     let along = q.dot(axis);
-    let across = q - axis * along;
+    let across = square_to(axis, q - axis * along);
     let rho = across.length();
     let out = if rho > 1e-14 * slant {
         across * (1.0 / rho)
@@ -152,6 +164,10 @@ fn from_frustum(q: DVec3, axis: DVec3, profile: &Profile) -> (f64, DVec3) {
     let mut best = (disc.0 * disc.0 + disc.1 * disc.1, disc);
     if side > 0.0 {
         let t = (along - height[0]) * mantle.0 - (rho - radius[0]) * mantle.1;
+        if (0.0..=slant).contains(&t) && side * side <= best.0 {
+            // The direction of a short way would be rounding, and off it the whole mantle stands out.
+            return (side, out * mantle.0 + axis * mantle.1);
+        }
         let t = t.clamp(0.0, slant);
         let wall = (
             rho - radius[0] + t * mantle.1,

@@ -3,6 +3,7 @@
 use glam::{DQuat, DVec2, DVec3};
 use physics::Pose;
 
+use crate::judge::built::surface_point;
 use crate::judge::cases::{self, Case, between, direction, random_shape, rotation};
 use crate::judge::known::Known;
 use crate::support::Random;
@@ -82,6 +83,45 @@ fn a_sphere_against_boxes_capsules_and_all_of_revolution() {
                 )
             });
             wrong.unless(!found.capped, || format!("{case:?}"));
+        }
+    }
+    wrong.end();
+}
+
+/// The direction of a short way is rounding, off which a long mantle stands out: what is claimed has to be proven.
+#[test]
+fn a_sphere_with_its_centre_close_to_an_axis_or_a_surface_claims_what_its_normal_proves() {
+    let mut wrong = Wrong::default();
+    let mut random = Random(37);
+    for kind in ["caps", "cyl", "cone", "frus", "box"] {
+        for i in 0..2000 {
+            let body = random_shape(kind, &mut random);
+            let radius = between(&mut random, 0.05, 1.0);
+            let pose_a = Pose::new(direction(&mut random) * 2.0, rotation(&mut random));
+            let short = 10f64.powf(between(&mut random, -13.0, -2.0));
+            let p = if i % 2 == 0 {
+                let aside = direction(&mut random);
+                DVec3::new(
+                    aside.x * short,
+                    between(&mut random, -0.3, 0.3),
+                    aside.z * short,
+                )
+            } else {
+                let (n, point) = surface_point(&body, &mut random);
+                point + n * short.copysign(random.next())
+            };
+            let case = Case {
+                a: body,
+                pose_a,
+                b: Known::Sphere(radius),
+                pose_b: Pose::new(pose_a.transform_point(p), rotation(&mut random)),
+            };
+            let found = answer(&case);
+            let proven = case.gap_along(found.normal);
+            wrong.unless(found.gap - proven <= 1e-13 * case.size(), || {
+                let by = found.gap - proven;
+                format!("{kind} {i} {p}: {by:.1e} beyond {proven}, {found:?}")
+            });
         }
     }
     wrong.end();
