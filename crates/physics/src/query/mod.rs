@@ -11,6 +11,7 @@
 mod bounds;
 mod boxes;
 mod bundle;
+mod candidates;
 mod closed;
 mod cores;
 mod expand;

@@ -9,6 +9,11 @@ use super::starts::{self, Found};
 use super::{Limits, Placed, Separation, bounds, boxes, gap_along, simplex};
 use crate::shape::Kind;
 
+/// A shape this many times as long as it is thick, or as wide, is thin.
+const THIN: f64 = 100.0;
+/// A converged answer's interval is no wider than this when apart, in units of the pair's size.
+const WIDEST: f64 = 5e-8;
+
 /// Order of the families: a pair is searched with the lower one first, so that each has one search.
 fn family(kind: &Kind) -> u8 {
     match kind {
@@ -29,14 +34,25 @@ fn rounding(kind: &Kind) -> f64 {
     }
 }
 
-/// Whether the square that the search sees an ellipsoid by loses more of its short axis than a gap may.
-fn is_slender(kind: &Kind) -> bool {
-    match kind {
-        Kind::Ellipsoid { semi } | Kind::TruncatedEllipsoid { semi, .. } => {
-            semi.max_element() > 100.0 * semi.min_element()
+/// Whether a shape is so thin that its ways out of others are many and hard to find. The square that the search sees an
+/// ellipsoid by then loses more of its short axis than a gap may.
+fn is_thin(kind: &Kind) -> bool {
+    let (short, long) = match kind {
+        Kind::Capsule { radius, segment } => (*radius, segment.half_height()),
+        Kind::Frustum(profile) => {
+            let (wide, high) = (
+                profile.radius[0].max(profile.radius[1]),
+                profile.half_height(),
+            );
+            (wide.min(high), wide.max(high))
         }
-        _ => false,
-    }
+        Kind::Ellipsoid { semi } | Kind::TruncatedEllipsoid { semi, .. } => {
+            (semi.min_element(), semi.max_element())
+        }
+        Kind::Cuboid { half } => (half.min_element(), half.max_element()),
+        Kind::Sphere { .. } | Kind::HalfSpace { .. } | Kind::Cloud(_) => return false,
+    };
+    long > THIN * short
 }
 
 /// Searches the signed gap of a pair without a closed form.
@@ -116,21 +132,28 @@ impl Task<'_> {
             enough: self.limits.enough + radii.0 + radii.1,
             known: None,
         };
+        let thin = is_thin(&self.a.shape.kind) || is_thin(&self.b.shape.kind);
         let found = match self.start {
-            Some(start) => starts::from_known(&pair, start, goal),
-            None => starts::from_nothing(&pair, goal),
+            Some(start) => starts::from_known(&pair, start, goal, thin),
+            None => starts::from_nothing(&pair, goal, thin),
         };
-        self.answer(&pair, &found, radii)
+        self.answer(&pair, &found, radii, thin)
     }
 
     #[inline(always)]
-    fn answer<A, B>(&self, pair: &Pair<A, B>, found: &Found, radii: (f64, f64)) -> Separation {
+    fn answer<A, B>(
+        &self,
+        pair: &Pair<A, B>,
+        found: &Found,
+        radii: (f64, f64),
+        thin: bool,
+    ) -> Separation {
         let summit = &found.summit;
         let (n, (core_a, core_b)) = (summit.n, summit.points);
         let point_a = self.a.position + core_a + n * radii.0;
         let point_b = self.b.position - core_b - n * radii.1;
         let mut gap = summit.s - radii.0 - radii.1;
-        if is_slender(&self.a.shape.kind) || is_slender(&self.b.shape.kind) {
+        if thin {
             gap = gap_along(self.a, self.b, n);
         }
         let upper = if summit.s > 0.0 {
@@ -139,6 +162,10 @@ impl Task<'_> {
         } else {
             bounds::overlap(self.a, self.b, (point_a + point_b) * 0.5).map(|up| up.max(gap))
         };
+        // Of needles and plates rounding may leave more than the search saw.
+        let width = upper.map_or(0.0, |upper| upper - gap);
+        let narrow = (WIDEST * pair.size).max(2.0 * self.limits.tolerance);
+        let wide = gap > 0.0 && gap <= self.limits.enough && width > narrow;
         Separation {
             gap,
             upper,
@@ -146,7 +173,7 @@ impl Task<'_> {
             point_a,
             point_b,
             iterations: summit.iterations,
-            capped: found.capped,
+            capped: found.capped || wide,
             local: found.local,
         }
     }

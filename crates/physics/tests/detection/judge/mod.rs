@@ -14,4 +14,5 @@ pub mod hull;
 pub mod known;
 pub mod line;
 pub mod oracle;
+pub mod slender;
 pub mod verdict;
