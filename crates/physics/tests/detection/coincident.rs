@@ -2,13 +2,15 @@
 
 use glam::{DQuat, DVec3};
 use physics::Pose;
+use physics::query::Limits;
 
-use crate::judge::cases::{Case, KINDS, random_shape, rotation};
+use crate::judge::cases::{Case, KINDS, direction, random_shape, rotation};
+use crate::judge::hull::Hull;
 use crate::judge::known::Known;
-use crate::judge::oracle::Oracle;
+use crate::judge::oracle::{Field, Oracle};
 use crate::judge::verdict::judge;
 use crate::support::Random;
-use crate::{Wrong, answer};
+use crate::{Wrong, answer, ask};
 
 /// Depth of a shape in its own copy at the same place: its smallest width.
 fn smallest_width(shape: &Known) -> f64 {
@@ -57,6 +59,73 @@ fn a_body_in_its_own_copy_is_as_deep_as_it_is_wide() {
                 });
                 wrong.unless((found.normal.length() - 1.0).abs() < 1e-12, || name.clone());
                 wrong.unless(found == answer(&case), || name.clone());
+            }
+        }
+    }
+    wrong.end();
+}
+
+/// The largest gap of two clouds that overlap: along a face's normal or square to two edges, for every facet of the
+/// polytope of their differences is one of these.
+fn largest_gap(case: &Case) -> f64 {
+    let (Known::Cloud(a), Known::Cloud(b)) = (&case.a, &case.b) else {
+        panic!("clouds have corners");
+    };
+    let field = Field::new(case);
+    let edges = |hull: &Hull, turn: DQuat| -> Vec<DVec3> {
+        let all = hull.faces.iter().flat_map(|face| {
+            let [i, j, k] = face.corners;
+            [(i, j), (j, k), (k, i)]
+        });
+        let once = all.filter(|(i, j)| i < j);
+        once.map(|(i, j)| turn * (hull.points[j] - hull.points[i]))
+            .collect()
+    };
+    let (turn_a, turn_b) = (case.pose_a.rotation, case.pose_b.rotation);
+    let (edges_a, edges_b) = (edges(a, turn_a), edges(b, turn_b));
+    let faces = (a.faces.iter().map(|face| turn_a * face.normal))
+        .chain(b.faces.iter().map(|face| turn_b * face.normal));
+    let square = edges_a
+        .iter()
+        .flat_map(|u| edges_b.iter().map(|v| u.cross(*v)))
+        .filter_map(DVec3::try_normalize);
+    faces
+        .chain(square)
+        .flat_map(|n| [n, -n])
+        .map(|n| field.gap(n))
+        .fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// A cloud in its own copy, at the same place and nearly so: opposite facets of the polytope of differences are as
+/// far. The growth of that polytope may need more than 20 normals, and then says so.
+#[test]
+fn a_cloud_in_its_own_copy_is_as_deep_as_it_is_wide() {
+    let mut wrong = Wrong::default();
+    let mut random = Random(73);
+    for (kind, shapes) in [("cloud8", 40), ("cloud64", 3)] {
+        for _ in 0..shapes {
+            let shape = random_shape(kind, &mut random);
+            let turn = rotation(&mut random);
+            for off in [0.0, 1e-30, 1e-12, 1e-9, 1e-6, 1e-3] {
+                for tilt in [0.0, 1e-12, 1e-8, 1e-4] {
+                    let mut case = identical(shape.clone(), direction(&mut random) * off, turn);
+                    let tilted = DQuat::from_axis_angle(direction(&mut random), tilt);
+                    case.pose_b.rotation = (tilted * turn).normalize();
+                    let right = largest_gap(&case);
+                    for iteration_cap in [20, 100] {
+                        let limits = Limits {
+                            iteration_cap,
+                            ..Limits::default()
+                        };
+                        let found = ask(&case, None, limits);
+                        let name = || format!("{kind} {off} {tilt}: not {right}, {found:?}");
+                        let capped = found.capped && kind == "cloud64" && iteration_cap == 20;
+                        wrong.unless((found.gap - right).abs() < 1e-9 || capped, name);
+                        wrong.unless(found.gap <= right + 1e-12, name);
+                        wrong.unless(found.upper.is_none_or(|up| up >= right - 1e-12), name);
+                        wrong.unless(found == ask(&case, None, limits), name);
+                    }
+                }
             }
         }
     }
