@@ -17,6 +17,7 @@ mod cores;
 mod expand;
 mod flats;
 mod manifold;
+mod models;
 mod outline;
 mod pair;
 mod path;

@@ -3,7 +3,7 @@
 use physics::query::{Limits, apart};
 
 use crate::judge::built::{drawn, surface_point};
-use crate::judge::cases::{Class, all_pairs, parametric_pairs};
+use crate::judge::cases::{Class, all_pairs};
 use crate::judge::oracle::Oracle;
 use crate::judge::verdict::judge;
 use crate::support::Random;
@@ -15,7 +15,7 @@ const SEED: u64 = 419;
 fn every_interval_holds_at_every_cap() {
     let mut wrong = Wrong::default();
     let oracle = Oracle::new(600, 4);
-    for pair in parametric_pairs() {
+    for pair in all_pairs() {
         for class in Class::ALL {
             for index in 0..6 {
                 let (case, truth) = drawn(pair, class, SEED, index);
