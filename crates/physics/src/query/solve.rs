@@ -52,7 +52,7 @@ fn is_thin(kind: &Kind) -> bool {
         Kind::Cuboid { half } => (half.min_element(), half.max_element()),
         Kind::Sphere { .. } | Kind::HalfSpace { .. } | Kind::Cloud(_) => return false,
     };
-    long > THIN * short
+    long >= THIN * short
 }
 
 /// Searches the signed gap of a pair without a closed form.
