@@ -85,8 +85,8 @@ pub struct Separation {
     pub point_b: DVec3,
     /// How many new normals were tried; zero for closed forms.
     pub iterations: u32,
-    /// Whether the search ended before the closest points lined up, or before every promising start was tried: the
-    /// bounds hold, the normal is only an estimate.
+    /// Whether the search ended before the closest points lined up, or before every promising start was tried, or left
+    /// an interval wider than 1e-7 of the size: the bounds hold, the normal is only an estimate.
     pub capped: bool,
     /// Whether an overlap was searched from the given start alone: there may be a shallower way out elsewhere.
     pub local: bool,
