@@ -8,7 +8,6 @@ const KNOWN_FAILURES: &[&str] = &[
     "heavy-top",
     "random-impacts",
     "momentum-of-a-shot",
-    "closed-alley-10-min",
     "painleve-rod",
     "cylinder-rolls-down",
     "eulers-disk",

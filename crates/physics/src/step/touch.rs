@@ -13,7 +13,7 @@ use crate::query::{self, Limits, Placed, Separation};
 use crate::response::compliance;
 use crate::world::World;
 
-/// Overlap in which the way out is looked for again, and not along the face that showed it last [m].
+/// Overlap in which the way out is looked for again, and not where it was last [m].
 const DEEP: f64 = 1e-3;
 
 /// Turning of a base that rocks and does not fall [rad/s]: a pin tips at 1.2 about its edge.
@@ -125,7 +125,10 @@ impl World {
             && !(self.plan.has(Effect::Hand) && self.is_held(slot))
     }
 
-    /// Exact search between two parts at given poses.
+    /// Exact search between two parts at given poses, `normal` being that of the last look.
+    ///
+    /// What has passed over a box since then still finds the old face there: s has a maximum on each, however deep below
+    /// it lies. A way out that is the old one and deep is not believed.
     pub(crate) fn search(&self, a: &Placed, b: &Placed, normal: DVec3) -> Separation {
         if let Some(answer) = query::on_face(a, b, normal)
             && answer.gap > -DEEP
@@ -133,7 +136,11 @@ impl World {
             return answer;
         }
         let start = (normal != DVec3::ZERO).then_some(normal);
-        query::separation_placed(a, b, start, self.limits())
+        let answer = query::separation_placed(a, b, start, self.limits());
+        if answer.local && answer.gap < -DEEP {
+            return query::separation_placed(a, b, None, self.limits());
+        }
+        answer
     }
 
     /// The contact `key` at the bodies' current poses; remembers its normal.
