@@ -6,8 +6,6 @@ use crate::support::bowling;
 const KNOWN_FAILURES: &[&str] = &[
     "symmetric-top",
     "heavy-top",
-    "random-impacts",
-    "momentum-of-a-shot",
     "painleve-rod",
     "cylinder-rolls-down",
     "eulers-disk",

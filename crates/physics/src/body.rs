@@ -16,8 +16,24 @@ use crate::world::Settings;
 pub use def::{BodyDef, MassProperties, Material, Motion};
 pub(crate) use motion::{Spin, Sweep, turn};
 
-/// Rates of a body that nothing carries.
-const STRAIGHT: [(DVec3, DVec3); 2] = [(DVec3::ZERO, DVec3::ZERO); 2];
+/// Rates at which velocity and momentum of a carried body change in one half of its stretch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Bend {
+    /// Of the velocity [m/s2].
+    pub linear: DVec3,
+    /// Of the momentum [N m], at the step's begin; it grows by `drift` [N m/s].
+    pub torque: DVec3,
+    pub drift: DVec3,
+}
+
+impl Bend {
+    /// Of a body that nothing carries.
+    pub const NONE: Bend = Bend {
+        linear: DVec3::ZERO,
+        torque: DVec3::ZERO,
+        drift: DVec3::ZERO,
+    };
+}
 
 /// A body in a world. Read it here, change it through the world.
 #[derive(Clone, Debug)]
@@ -44,9 +60,8 @@ pub struct Body {
     pub(crate) turning: DVec3,
     /// Acceleration for the rest of the step [m/s2]: gravity in flight, zero while something carries the body.
     pub(crate) acceleration: DVec3,
-    /// Rates of velocity [m/s2] and momentum [N m] while something carries the body, before and after the middle of
-    /// its stretch of time; see `linear_now`.
-    pub(crate) bend: [(DVec3, DVec3); 2],
+    /// What something that carries the body does before and after the middle of its stretch of time; see `linear_now`.
+    pub(crate) bend: [Bend; 2],
     /// Middle of the stretch of time to which velocity and momentum of a carried body belong [s].
     pub(crate) middle: f64,
     /// Time inside the current step up to which the state has been brought [s].
@@ -110,7 +125,7 @@ impl Body {
             momentum: DVec3::ZERO,
             turning: DVec3::ZERO,
             acceleration: DVec3::ZERO,
-            bend: STRAIGHT,
+            bend: [Bend::NONE; 2],
             middle: 0.0,
             clock: 0.0,
             until: 0.0,
@@ -217,22 +232,23 @@ impl Body {
     /// velocity then lies between two that the contacts have answered, and what they take in the second half is not
     /// given back in the first. At the end of a step there is nothing to add.
     pub(crate) fn linear_now(&self) -> DVec3 {
-        self.linear + self.bend_at(self.clock).0 * (self.clock - self.middle)
+        self.linear + self.bend_at(self.clock).linear * (self.clock - self.middle)
     }
 
     pub(crate) fn momentum_now(&self) -> DVec3 {
-        self.momentum + self.bend_at(self.clock).1 * (self.clock - self.middle)
+        let bend = self.bend_at(self.clock);
+        self.momentum + (bend.torque + bend.drift * self.clock) * (self.clock - self.middle)
     }
 
-    /// Rates of velocity [m/s2] and momentum [N m] at time `t` [s] of the step.
-    pub(crate) fn bend_at(&self, t: f64) -> (DVec3, DVec3) {
+    /// Rates of velocity and momentum at time `t` [s] of the step.
+    pub(crate) fn bend_at(&self, t: f64) -> Bend {
         self.bend[usize::from(t > self.middle)]
     }
 
     /// Makes velocity and momentum those of the body's clock.
     pub(crate) fn straighten(&mut self) {
         (self.linear, self.momentum) = (self.linear_now(), self.momentum_now());
-        self.bend = STRAIGHT;
+        self.bend = [Bend::NONE; 2];
     }
 
     /// Whether impulses move it.
@@ -288,7 +304,7 @@ impl Body {
         self.momentum = DVec3::ZERO;
         self.turning = DVec3::ZERO;
         self.acceleration = DVec3::ZERO;
-        self.bend = STRAIGHT;
+        self.bend = [Bend::NONE; 2];
     }
 
     pub(crate) fn inv_mass(&self) -> f64 {

@@ -404,3 +404,33 @@ fn a_box_that_was_passed_over_is_touched_on_its_near_side() {
         assert!(x > 0.5, "seed {seed}, trial {trial}: it is at {x}");
     }
 }
+
+#[test]
+fn bodies_that_press_on_each_other_in_free_space_keep_their_angular_momentum() {
+    for (e, mu) in [(0.49, 0.49), (0.0, 1.0), (0.0, 0.0)] {
+        let m = material(e, mu);
+        let mut world = World::new(Settings {
+            step_hz: 90.0,
+            gravity: DVec3::ZERO,
+            ..Settings::default()
+        })
+        .unwrap();
+        for spot in spots() {
+            world.add(pin(&composite_pin(), m, spot));
+        }
+        throw(&mut world, m, 0.03, 1.0, 8.0);
+        let total = |world: &World| {
+            let bodies = world.ids().map(|id| world.body(id));
+            bodies.fold(DVec3::ZERO, |sum, body| {
+                let own = body.linear_velocity() * body.mass().mass;
+                sum + body.angular_momentum() + body.pose().position.cross(own)
+            })
+        };
+        let before = total(&world);
+        for _ in 0..180 {
+            world.step();
+        }
+        let off = (total(&world) - before).length() / before.length();
+        assert!(off < 1e-11, "e {e} mu {mu}: off by {off}");
+    }
+}

@@ -208,9 +208,9 @@ impl Body {
         self.momentum = rotation * (before.conjugate() * self.momentum);
         // What contacts add stays a change of the angular velocity in the world.
         let i = self.mass.inertia;
-        for (_, torque) in self.bend.iter_mut().filter(|bend| bend.1 != DVec3::ZERO) {
-            let change = before * (before.conjugate() * *torque / i);
-            *torque = rotation * (rotation.conjugate() * change * i);
+        for bend in self.bend.iter_mut().filter(|b| b.torque != DVec3::ZERO) {
+            let change = before * (before.conjugate() * bend.torque / i);
+            bend.torque = rotation * (rotation.conjugate() * change * i);
         }
     }
 

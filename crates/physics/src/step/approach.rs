@@ -228,11 +228,11 @@ impl<'a> Approach<'a> {
             let pose = body.pose_at(t);
             let linear = body.linear
                 + body.acceleration * (t - body.clock)
-                + body.bend_at(t).0 * (t - body.middle);
+                + body.bend_at(t).linear * (t - body.middle);
             linear + body.angular_velocity().cross(point - pose.position)
         };
         let speed = self.normal.dot(velocity(a) - velocity(b));
-        let bend = a.acceleration + a.bend_at(t).0 - b.acceleration - b.bend_at(t).0;
+        let bend = a.acceleration + a.bend_at(t).linear - b.acceleration - b.bend_at(t).linear;
         speed > APPROACH
             || (speed > -1e3 * APPROACH && self.normal.dot(bend) > 0.0)
             || (self.gap < -SINK && speed > -PARTING)

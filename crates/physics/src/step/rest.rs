@@ -18,7 +18,7 @@ use super::row::{Mover, Row};
 use super::scratch::Carry;
 use super::solve::{Halves, Work, group, most_passes};
 use super::touch::Touch;
-use crate::body::Motion;
+use crate::body::{Bend, Motion, Spin};
 use crate::effects::Effect;
 use crate::response::{Response, friction_rate_per_step};
 use crate::world::World;
@@ -99,8 +99,10 @@ impl World {
         let first = room.answer(&self.bodies, carried.len(), &halves);
         self.still(&mut room, carried.len(), NOISE * kick.length());
         room.middle.extend(&room.movers);
+        room.note_drift(false, half);
         room.rows.iter_mut().for_each(Row::renew);
         let second = room.answer(&self.bodies, carried.len(), &halves);
+        room.note_drift(true, half);
         self.note_work(&room, carried.len(), [first, second]);
         self.keep_loads(&room.rows, half);
         for (i, slot) in room.slots.iter().enumerate() {
@@ -119,7 +121,16 @@ impl World {
                 body.linear = middle.linear;
                 body.momentum = inertia * middle.angular;
                 let halves = [change(before, middle), change(middle, now)];
-                body.bend = halves.map(|(linear, turned)| (linear / half, turned / half));
+                // Without the gyroscopic term no momentum is kept, and torques go round with the body.
+                let keeps = f64::from(body.spin != Spin::Steady);
+                body.bend = [0, 1].map(|k| {
+                    let ((linear, turned), drift) = (halves[k], room.drifts[i][k] * keeps);
+                    Bend {
+                        linear: linear / half,
+                        torque: turned / half - drift * body.clock,
+                        drift,
+                    }
+                });
                 (body.middle, body.until) = (body.clock + half, until);
             } else {
                 let (linear, turned) = change(before, now);

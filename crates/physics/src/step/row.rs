@@ -50,6 +50,12 @@ impl Mover {
         }
     }
 
+    /// How easily the body turns, in the mean over all axes [1/(kg m2)], times three.
+    fn ease(&self) -> f64 {
+        let i = &self.inv_inertia;
+        i.x_axis.x + i.y_axis.y + i.z_axis.z
+    }
+
     /// Change of the angular velocity [rad/s] that an angular impulse makes [N m s].
     pub fn turn_by(&self, angular_impulse: DVec3) -> DVec3 {
         self.inv_inertia * angular_impulse
@@ -90,7 +96,7 @@ pub(crate) struct Row {
     hoped: f64,
     /// How fast the contact closed before it was answered [m/s].
     approach: f64,
-    /// Tangential impulse on a so far, within the cone [N s].
+    /// Tangential impulse on a so far [N s].
     rubbed: DVec3,
     plane: Plane,
     /// Change of velocities that a base gave so far, for undoing.
@@ -143,6 +149,23 @@ impl Row {
         self.given = (DVec3::ZERO, DVec3::ZERO);
     }
 
+    /// Whether impulses move and turn both bodies.
+    pub fn is_free(&self, all: &[Mover]) -> bool {
+        [self.movers.0, self.movers.1].map(|i| all[i].ease() > 0.0) == [true; 2]
+    }
+
+    /// How the torques of its impulses on a and on b change, per second, as the two drift apart [N m].
+    ///
+    /// What the arms of opposite impulses at one place gain goes for the most part to the body that is harder to turn: that
+    /// changes the turning of both the least.
+    pub fn drift(&self, middle: &[Mover]) -> (DVec3, DVec3) {
+        let (a, b) = (&middle[self.movers.0], &middle[self.movers.1]);
+        let impulse = self.rubbed - self.touch.normal * self.pressed;
+        let change = (b.linear - a.linear).cross(impulse);
+        let share = b.ease() / (a.ease() + b.ease());
+        (change * share, change * (1.0 - share))
+    }
+
     /// Takes a load for `span` [s] for granted until the passes know better.
     pub fn expect(&mut self, load: Load, span: f64) {
         self.pressed = load.pressed * span;
@@ -162,8 +185,11 @@ impl Row {
 
     /// Gives the bodies what it took for granted, which the passes correct; or takes nothing for granted.
     pub fn begin(&mut self, all: &mut [Mover], expects: bool) {
+        if !expects || !matches!(self.friction, Friction::Cone(_)) {
+            self.rubbed = DVec3::ZERO;
+        }
         if !expects {
-            (self.pressed, self.rubbed) = (0.0, DVec3::ZERO);
+            self.pressed = 0.0;
             return;
         }
         self.pressed = self.pressed.max(self.hoped);
@@ -289,6 +315,7 @@ impl Row {
             impulse = f00 + (f01 - f00) * rate;
         }
         self.pressed = (self.pressed - impulse.dot(n)).max(0.0);
+        self.rubbed += impulse - n * n.dot(impulse);
         all[self.movers.0].push(arm_a, impulse);
         all[self.movers.1].push(arm_b, -impulse);
     }

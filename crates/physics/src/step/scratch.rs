@@ -2,6 +2,8 @@
 
 use std::collections::BinaryHeap;
 
+use glam::DVec3;
+
 use super::islands::Islands;
 use super::pairs::Contact;
 use super::row::{Mover, Row};
@@ -50,6 +52,8 @@ pub(crate) struct Carry {
     pub movers: Vec<Mover>,
     pub before: Vec<Mover>,
     pub middle: Vec<Mover>,
+    /// Of every body what each half of the stretch adds to its torque as those that touch it drift [N m/s].
+    pub drifts: Vec<[DVec3; 2]>,
     pub rows: Vec<Row>,
     pub labels: Vec<usize>,
     pub ends: Vec<usize>,

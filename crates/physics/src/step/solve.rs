@@ -220,6 +220,28 @@ impl Carry {
         work
     }
 
+    /// Notes how the torques of the last half, the first or the second, change as bodies drift past each other.
+    ///
+    /// The rows act where bodies touched when the stretch began, and opposite impulses at two places turn a pair by
+    /// itself. What touches the ground has no angular momentum to keep: there the arms stay those at which no contact
+    /// approaches, and energy is kept better.
+    pub fn note_drift(&mut self, second: bool, half: f64) {
+        self.drifts.resize(self.slots.len(), [DVec3::ZERO; 2]);
+        let mut start = 0;
+        for end in &self.ends {
+            let rows = &self.rows[start..*end];
+            start = *end;
+            if !rows.iter().all(|row| row.is_free(&self.middle)) {
+                continue;
+            }
+            for row in rows {
+                let (a, b) = row.drift(&self.middle);
+                self.drifts[row.movers.0][usize::from(second)] += a / half;
+                self.drifts[row.movers.1][usize::from(second)] += b / half;
+            }
+        }
+    }
+
     /// Empties all lists for the next stretch.
     pub fn clear(&mut self) {
         for slot in self.slots.drain(..) {
@@ -228,6 +250,7 @@ impl Carry {
         self.movers.clear();
         self.before.clear();
         self.middle.clear();
+        self.drifts.clear();
         self.rows.clear();
         self.labels.clear();
         self.ends.clear();
