@@ -4,7 +4,6 @@ use crate::support::bowling;
 
 /// Cases that fail, as docs/hard-cases.md says. A new failure and a new pass are both news.
 const KNOWN_FAILURES: &[&str] = &[
-    "symmetric-top",
     "heavy-top",
     "painleve-rod",
     "cylinder-rolls-down",

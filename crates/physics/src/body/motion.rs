@@ -177,12 +177,12 @@ impl Body {
     /// Torque-free rotation for `dt` [s].
     fn tumbled(&self, dt: f64) -> DQuat {
         let i = self.mass.inertia;
-        if i.x == i.z {
-            // Closed form: precession about the angular momentum, after a spin about the body's own axis.
-            let along = (self.rotation.conjugate() * self.momentum).y;
-            let spin = along * (1.0 / i.y - 1.0 / i.x) * dt;
-            let precession = turn(self.momentum * (dt / i.x));
-            return precession * self.rotation * turn(DVec3::Y * spin);
+        if let Some((axis, own, across)) = even_axis(i) {
+            // Closed form: precession about the angular momentum, after a spin about the axis of the equal moments.
+            let along = (self.rotation.conjugate() * self.momentum).dot(axis);
+            let spin = along * (1.0 / own - 1.0 / across) * dt;
+            let precession = turn(self.momentum * (dt / across));
+            return precession * self.rotation * turn(axis * spin);
         }
         // Three exact turns about the principal axes, symmetric in time: keeps the momentum, energy to O(dt^2).
         let mut rotation = self.rotation;
@@ -229,6 +229,17 @@ impl Body {
             self.linear += self.acceleration * (t - self.clock);
         }
         self.clock = t;
+    }
+}
+
+/// The principal axis across which two moments of inertia are equal, with the moments about it and across it [kg m2].
+fn even_axis(i: DVec3) -> Option<(DVec3, f64, f64)> {
+    if i.x == i.z {
+        Some((DVec3::Y, i.y, i.x))
+    } else if i.x == i.y {
+        Some((DVec3::Z, i.z, i.x))
+    } else {
+        (i.y == i.z).then_some((DVec3::X, i.x, i.y))
     }
 }
 
