@@ -6,6 +6,8 @@ mod accuracy;
 mod assets;
 /// What is refused, and with which sentence.
 mod bad_input;
+/// One recorded throw under several conditions.
+mod compare;
 /// What a scene calls for, and what it costs.
 mod effects;
 /// Pictures of hand-set states, both eyes, against references.

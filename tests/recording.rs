@@ -15,7 +15,7 @@ use physics::Pose;
 use crate::support::{bowling, fresh_folder};
 
 /// One short recording by the real program, made once for all tests that read it.
-fn recording() -> &'static (PathBuf, String) {
+pub fn recording() -> &'static (PathBuf, String) {
     static RECORDING: OnceLock<(PathBuf, String)> = OnceLock::new();
     RECORDING.get_or_init(|| {
         let folder = fresh_folder("recording").join("session");

@@ -10,10 +10,10 @@ pub mod timing;
 
 mod cap;
 mod continuous;
-mod figure;
+pub(crate) mod figure;
 mod hits;
 mod kernels;
-mod ladder;
+pub(crate) mod ladder;
 mod oracle;
 mod overlay;
 #[cfg(feature = "peers")]

@@ -1,6 +1,7 @@
 //! The command line: what a person may ask for, and what is refused before anything starts.
 
 mod accuracy;
+mod compare;
 mod throw;
 
 use std::path::PathBuf;
@@ -9,6 +10,7 @@ use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 
 pub use accuracy::AccuracyArguments;
+pub use compare::{CompareArguments, Sweep};
 pub use throw::{
     ModelChoice, PinNumbers, ShapeChoice, ShotArguments, Span, StrikeMapArguments, ThrowArguments,
 };
@@ -132,6 +134,12 @@ pub enum Command {
     /// accuracy.csv, a figure per dial and one of all as SVG and PNG: error against time, the default and the knee marked.
     /// docs/accuracy.md reads them.
     Accuracy(AccuracyArguments),
+    /// Repeat one recorded throw under the eight conditions of the paper's Table 1, side by side.
+    ///
+    /// Prints how far each parts from the base condition and whether that explains who noticed what (Table 4), and
+    /// writes tables, a contact sheet of the same instants and a video; with --sweep, figures along a parameter
+    /// instead. docs/compare.md explains the numbers.
+    Compare(CompareArguments),
 }
 
 /// Who or what bowls.

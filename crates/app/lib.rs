@@ -1,12 +1,13 @@
 //! The `bowling` program: who bowls, what is recorded, what is drawn.
 //!
 //! Entry points: [`run`] reads the command line; [`play`], [`replay`], [`query`], [`hard_cases`],
-//! [`shot`], [`strike_map`], [`effects`](mod@effects) and [`accuracy`](mod@accuracy) are the commands; a [`session::Session`] takes one input per displayed frame from any device.
+//! [`shot`], [`strike_map`], [`effects`](mod@effects), [`accuracy`](mod@accuracy) and [`compare`] are the commands; a [`session::Session`] takes one input per displayed frame from any device.
 
 pub mod accuracy;
 pub mod args;
 pub mod boundary;
 pub mod choose;
+pub mod compare;
 pub mod convert;
 pub mod devices;
 pub mod effects;
@@ -82,6 +83,9 @@ fn obey(arguments: &Arguments) -> Result<()> {
         }
         Some(Command::Accuracy(accuracy)) => {
             accuracy::accuracy(accuracy, &root::find(arguments.root.as_deref())?)
+        }
+        Some(Command::Compare(compare)) => {
+            compare::compare(compare, &root::find(arguments.root.as_deref())?)
         }
         Some(Command::StrikeMap(map)) => {
             strike_map::strike_map(map, &root::find(arguments.root.as_deref())?)

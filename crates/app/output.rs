@@ -187,12 +187,17 @@ impl Drop for Draft {
     }
 }
 
-/// The default folder: `out/TIME-seedN`, UTC below the current one.
+/// The default folder of a session: `out/TIME-seedN`, UTC below the current one.
 pub fn default_folder(seed: u64, now: SystemTime) -> PathBuf {
+    timed_folder(&format!("seed{seed}"), now)
+}
+
+/// A folder for something that is made now: `out/TIME-NAME`, UTC below the current one.
+pub fn timed_folder(name: &str, now: SystemTime) -> PathBuf {
     let seconds = now
         .duration_since(UNIX_EPOCH)
         .map_or(0, |since| since.as_secs());
-    Path::new("out").join(format!("{}-seed{seed}", utc_name(seconds)))
+    Path::new("out").join(format!("{}-{name}", utc_name(seconds)))
 }
 
 /// `seconds` since 1970 as a UTC time that sorts and is a file name on every system.

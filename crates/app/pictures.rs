@@ -5,7 +5,7 @@ pub mod avi;
 pub mod contact_sheet;
 pub mod film;
 pub mod highlights;
-mod layout;
+pub(crate) mod layout;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -125,13 +125,8 @@ impl Painter {
         eyes: &[View; 2],
         size: (u32, u32),
     ) -> Result<[RgbaImage; 2]> {
-        if self.is_stopped() {
-            bail!("the drawing was interrupted");
-        }
-        let visible = still.iter().chain(&shot.moving);
-        let scene = convert::scene(visible, &self.stock, shot.hand_is_closed);
         let (drawn, relayed) = pixels(self.display.current(), size);
-        let images = self.renderer.render(&scene, eyes, drawn.0, drawn.1)?;
+        let images = self.images(still, shot, eyes, drawn)?;
         let shown = |image: &RgbaImage| relay(&relay(image, relayed.0, relayed.1), size.0, size.1);
         let images: Vec<RgbaImage> = images.iter().map(shown).collect();
         images
@@ -139,10 +134,52 @@ impl Painter {
             .map_err(|_| anyhow::anyhow!("the renderer drew another number of eyes than two"))
     }
 
+    /// One eye's picture of `size` pixels, of no particular display.
+    ///
+    /// # Errors
+    /// When it cannot be drawn, or drawing was stopped.
+    pub fn one_eye(
+        &mut self,
+        still: &[Visible],
+        shot: &Shot,
+        view: View,
+        size: (u32, u32),
+    ) -> Result<RgbaImage> {
+        let mut images = self.images(still, shot, &[view], size)?;
+        images
+            .pop()
+            .context("the renderer drew no picture of a view")
+    }
+
+    /// The display that pictures are for.
+    pub fn display(&self) -> &DisplayConfig {
+        &self.display
+    }
+
+    /// Middle of the pin deck in front, world frame [m].
+    pub fn headpin_z(&self) -> f64 {
+        self.headpin_z
+    }
+
+    fn images(
+        &mut self,
+        still: &[Visible],
+        shot: &Shot,
+        views: &[View],
+        size: (u32, u32),
+    ) -> Result<Vec<RgbaImage>> {
+        if self.is_stopped() {
+            bail!("the drawing was interrupted");
+        }
+        let visible = still.iter().chain(&shot.moving);
+        let scene = convert::scene(visible, &self.stock, shot.hand_is_closed);
+        Ok(self.renderer.render(&scene, views, size.0, size.1)?)
+    }
+
     /// Lines of text, each an image of its own.
     ///
     /// Painted together and cut apart, because painting takes long and the length of a text does not matter.
-    fn captions(&mut self, lines: &[String]) -> Result<Vec<RgbaImage>> {
+    pub(crate) fn captions(&mut self, lines: &[String]) -> Result<Vec<RgbaImage>> {
         let mut images = Vec::with_capacity(lines.len());
         for lines in lines.chunks(LINES_AT_ONCE) {
             let block = TextBlock {

@@ -60,7 +60,10 @@ pub fn replay(folder: &Path) -> Result<()> {
 }
 
 /// Refuses what no session records, before it can stall or break the simulation.
-fn check_inputs(recording: &Recording) -> Result<()> {
+///
+/// # Errors
+/// A sentence with what was changed.
+pub fn check_inputs(recording: &Recording) -> Result<()> {
     let conditions = &recording.header.conditions;
     conditions.lobby.check()?;
     for button in Button::BOTH {

@@ -3,7 +3,7 @@
 mod answer;
 pub(crate) mod clock;
 pub mod distribution;
-mod record;
+pub(crate) mod record;
 pub mod scene;
 pub mod series;
 pub mod throw;

@@ -138,6 +138,19 @@ fn rungs(profile: &Profile, config: &Config) -> Vec<Rung> {
     rungs
 }
 
+/// The ladder's shapes of the pin with their names, cheapest first, up to the densest that racks are made of.
+pub fn pins(config: &Config) -> Vec<(String, Arc<Compound>)> {
+    let densest = format!("{} slices", RACKED[1]);
+    let rungs = rungs(&Profile::specification(), config);
+    let last = rungs.iter().position(|rung| rung.name == densest);
+    let count = last.map_or(rungs.len(), |last| last + 1);
+    rungs
+        .into_iter()
+        .take(count)
+        .map(|rung| (rung.name, rung.pin))
+        .collect()
+}
+
 /// Ball `index` beside the pin, somewhere between touching and a centimetre off; its truth is the profile's.
 fn place(profile: &Profile, index: usize) -> Place {
     let mut random = SplitMix64::for_index(SEED, index as u64);

@@ -12,9 +12,9 @@ use super::throw::{Flight, Release};
 use crate::output::Draft;
 
 /// What the first line calls the format.
-const FORMAT: &str = "bowling-throw";
+pub const FORMAT: &str = "bowling-throw";
 /// Changed when a reader of the last version would misread a file.
-const VERSION: u32 = 1;
+pub const VERSION: u32 = 1;
 
 /// A file that grows by a line a step, and appears when the throw is over.
 pub struct Record {

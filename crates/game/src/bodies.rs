@@ -10,6 +10,7 @@ use physics::{
 
 use crate::GameError;
 use crate::alley::Part;
+use crate::components::Shown;
 use crate::config::{BallConfig, Config, EffectName, ResponseModel, coulomb};
 use crate::pin_shape::pin_mass;
 use crate::visible::Model;
@@ -126,6 +127,28 @@ pub(crate) fn ball(
         drag_area_m2: ball.drag_area_m2,
         ..body(config, coulomb::BALL, compound, motion, mass, pose)
     })
+}
+
+/// What is seen of a pin, whatever shape it collides with.
+pub(crate) fn shown_pin(config: &Config, number: u8) -> Shown {
+    let pin = &config.pin;
+    let width = 2.0 * pin.parts.belly_radius_m;
+    Shown {
+        model: Model::Pin(number),
+        size: DVec3::new(width, pin.height_m, width),
+        body_from_model: Pose::from_position(DVec3::NEG_Y * pin.cg_height_m),
+        is_hidden: false,
+    }
+}
+
+/// What is seen of a ball.
+pub(crate) fn shown_ball(ball: &BallConfig, index: u8) -> Shown {
+    Shown {
+        model: Model::Ball(index),
+        size: DVec3::splat(ball.diameter_m),
+        body_from_model: Pose::IDENTITY,
+        is_hidden: false,
+    }
 }
 
 /// Mass of what is fixed or driven: physics asks for one and does not use it.

@@ -212,14 +212,7 @@ impl<'a> Builder<'a> {
         for (number, spot) in (1..).zip(spots) {
             let def = bodies::pin(self.config, compound.clone(), spot);
             let pose = def.pose;
-            let width = 2.0 * pin.parts.belly_radius_m;
-            let shown = Shown {
-                model: Model::Pin(number),
-                size: DVec3::new(width, pin.height_m, width),
-                body_from_model: Pose::from_position(DVec3::NEG_Y * pin.cg_height_m),
-                is_hidden: false,
-            };
-            let entity = self.body(def, shown);
+            let entity = self.body(def, bodies::shown_pin(self.config, number));
             let state = Pin {
                 number,
                 spot,
@@ -238,12 +231,7 @@ impl<'a> Builder<'a> {
         let mut balls = Vec::new();
         for ((index, ball), home) in (0..).zip(&self.config.balls).zip(homes) {
             let radius = ball.radius_m();
-            let shown = Shown {
-                model: Model::Ball(index),
-                size: DVec3::splat(ball.diameter_m),
-                body_from_model: Pose::IDENTITY,
-                is_hidden: false,
-            };
+            let shown = bodies::shown_ball(ball, index);
             let entity = self.body(bodies::ball(self.config, ball, home)?, shown);
             let state = Ball {
                 index,
