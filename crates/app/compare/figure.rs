@@ -180,13 +180,14 @@ fn panel<B: DrawingBackend>(
         let dots = places.iter().flatten();
         let dots = dots.map(|place| Circle::new(*place, 3, series.colour.filled()));
         chart.draw_series(dots).map_err(failed)?;
-        // What never happens lies hollow on the upper edge.
+        // What never happens lies at the upper edge, a row for each line.
+        let height = (0.98 - 0.05 * f64::from(row)) * values.end;
         let never = swept
             .steps
             .iter()
             .filter(|step| (series.value)(step).is_none());
-        let hollow = never.map(|step| TriangleMarker::new((step.x, 0.98 * values.end), 5, stroke));
-        chart.draw_series(hollow).map_err(failed)?;
+        let marks = never.map(|step| TriangleMarker::new((step.x, height), 5, stroke));
+        chart.draw_series(marks).map_err(failed)?;
     }
     Ok(())
 }

@@ -185,15 +185,10 @@ impl Gallery<'_> {
             }
             let mut page = paper(width, height);
             place(&mut page, instant, GAP, height - TEXT + 2);
-            for index in 0..count {
+            for (index, heading) in headings.iter().enumerate() {
                 let (column, row) = (index as u32 % across, index as u32 / across);
                 let (x, y) = (column * size.0, row * (size.1 + TEXT));
-                place(
-                    &mut page,
-                    &fitting(&headings[index], size.0),
-                    x + GAP,
-                    y + 2,
-                );
+                place(&mut page, &fitting(heading, size.0), x + GAP, y + 2);
                 let picture = self.tile(index, time, size)?;
                 place(&mut page, &picture, x, y + TEXT);
             }
@@ -243,8 +238,8 @@ impl Gallery<'_> {
         let seen = self.comparison.divergence(index).seen;
         let parts = match seen {
             _ if index == self.comparison.base => "base".to_owned(),
-            Some(time) => format!("5 deg apart at {time:.2} s"),
-            None => "never 5 deg apart".to_owned(),
+            Some(time) => format!("5 deg at {time:.2} s"),
+            None => "never 5 deg".to_owned(),
         };
         [
             setting,

@@ -64,7 +64,7 @@ pub fn edges(thrown: &Thrown, courses: &[Course]) -> Vec<Edge> {
 struct Visibility {
     /// Pairs whose balls part for the eye, of how many.
     seen: (usize, usize),
-    /// Median time until they do; infinite where most never do [s].
+    /// Median time until they do, the lower one; infinite where most never do [s].
     seen_after: f64,
     /// Median time between the two balls' first hits [s].
     between_hits: f64,
@@ -76,21 +76,23 @@ impl Visibility {
             .iter()
             .map(|edge| edge.divergence.seen.unwrap_or(f64::INFINITY));
         let times: Vec<f64> = times.collect();
+        let seen = times.iter().filter(|time| time.is_finite()).count();
+        let [seen_after, _] = middle(times);
+        let [low, high] = middle(edges.iter().map(|edge| edge.between_hits()).collect());
         Self {
-            seen: (
-                times.iter().filter(|time| time.is_finite()).count(),
-                times.len(),
-            ),
-            seen_after: median(times),
-            between_hits: median(edges.iter().map(|edge| edge.between_hits()).collect()),
+            seen: (seen, edges.len()),
+            seen_after,
+            between_hits: 0.5 * (low + high),
         }
     }
 }
 
-/// The value in the middle; of an even number the lower one, because a mean with infinity says nothing.
-fn median(mut values: Vec<f64>) -> f64 {
+/// The values on both sides of the middle; the same one twice where their number is odd.
+///
+/// Half of the pairs may never part: the lower one then says when the others do, as a mean with infinity would not.
+fn middle(mut values: Vec<f64>) -> [f64; 2] {
     values.sort_by(f64::total_cmp);
-    values[(values.len() - 1) / 2]
+    [values[(values.len() - 1) / 2], values[values.len() / 2]]
 }
 
 /// Something that a participant may have gone by.
@@ -107,7 +109,7 @@ const FRAME: f64 = 1.0 / 90.0;
 
 const SIGNS: [Sign; 2] = [
     Sign {
-        words: "By the ball's path, 5 degrees for the eye",
+        words: "By the ball's path (5 degrees for the eye)",
         exceeds: |a, b| {
             a.seen.0 > b.seen.0 || (a.seen.0 == b.seen.0 && a.seen_after < b.seen_after)
         },
@@ -123,7 +125,7 @@ const SIGNS: [Sign; 2] = [
 /// What the edges say about Table 4: a line for each factor, then a sentence for each sign.
 pub fn verdict(table: &Table1, edges: &[Edge]) -> String {
     let mut text = format!(
-        "{:<11}{:>11}{:>24}{:>12}{:>26}\n",
+        "{:<11}{:>11}{:>26}{:>12}{:>28}\n",
         "changed",
         "noticed by",
         "5 degrees apart in pairs",
@@ -139,7 +141,7 @@ pub fn verdict(table: &Table1, edges: &[Edge]) -> String {
             false => "n/a".to_owned(),
         };
         text += &format!(
-            "{:<11}{:>11}{:>24}{:>12}{:>26}\n",
+            "{:<11}{:>11}{:>26}{:>12}{:>28}\n",
             factor.name,
             format!("{} of {}", factor.noticed, factor.subjects),
             format!("{} of {}", visibility.seen.0, visibility.seen.1),
@@ -168,7 +170,7 @@ fn sentence(sign: &Sign, visible: &[(&Factor, Visibility)]) -> String {
     }
     if !wrong.is_empty() {
         return format!(
-            "{words} this throw contradicts Table 4: {}.",
+            "{words}, this throw contradicts Table 4: {}.",
             wrong.join(", ")
         );
     }
@@ -180,12 +182,12 @@ fn sentence(sign: &Sign, visible: &[(&Factor, Visibility)]) -> String {
         .collect();
     if unnoticed.is_empty() {
         return format!(
-            "{words} this throw explains Table 4: the more subjects noticed a change, the more it shows, and what nobody \
+            "{words}, this throw explains Table 4: the more subjects noticed a change, the more it shows, and what nobody \
              noticed does not show."
         );
     }
     format!(
-        "{words} this throw explains the order of Table 4, but not that nobody noticed {}, which shows too.",
+        "{words}, this throw explains the order of Table 4, but not that nobody noticed {}, which shows too.",
         unnoticed.join(" and ")
     )
 }
