@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use game::{Button, Conditions, DisplayProfileName, EventKind, Game, Input};
+use physics::{Stopwatch, Unwatched};
 
 use crate::boundary::{Boundary, Refused};
 use crate::journal::{self, End, Header, Journal};
@@ -108,9 +109,17 @@ impl Session {
     /// # Errors
     /// When the recording cannot be written any more; the session must end then.
     pub fn frame(&mut self, input: Input) -> Result<()> {
+        self.frame_watched(input, &mut Unwatched)
+    }
+
+    /// The same, while `watch` is told the stages of the physics.
+    ///
+    /// # Errors
+    /// As [`Session::frame`].
+    pub fn frame_watched(&mut self, input: Input, watch: &mut impl Stopwatch) -> Result<()> {
         let input = self.boundary.admit(input);
         self.journal.input(&input)?;
-        self.game.step(&input);
+        self.game.step_watched(&input, watch);
         for event in self.game.events() {
             self.journal.event(event)?;
             match event.kind {

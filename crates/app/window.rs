@@ -3,6 +3,7 @@
 //! The simulation follows the wall clock in the device's own frames, however fast the window is drawn; the journal sees no
 //! difference to a session without a window.
 
+mod cost;
 mod keys;
 mod overlay;
 
@@ -28,6 +29,7 @@ use crate::devices::script::{Script, Velocities};
 use crate::pictures::{Painter, Wanted};
 use crate::play::{self, Progress};
 use crate::session::{Session, Setup};
+use cost::Meter;
 use keys::{Command, Keys};
 use overlay::Overlay;
 
@@ -35,6 +37,8 @@ use overlay::Overlay;
 const WINDOW_FOV: f32 = 1.05;
 /// Longest time that one picture makes up for [s]: after a longer stall the alley goes on from where it was.
 const LONGEST_CATCH_UP_S: f64 = 0.25;
+/// Pictures a second of a display that does not tell.
+const USUAL_HZ: f64 = 60.0;
 /// Where the eyes are while the head is not tracked: behind the approach, at a standing person's height [m].
 const SPECTATOR: DVec3 = DVec3::new(0.0, 1.7, 5.0);
 
@@ -134,6 +138,7 @@ struct Stage {
     renderer: Renderer,
     stock: Stock,
     overlay: Overlay,
+    meter: Meter,
     keys: Keys,
     session: Session,
     /// Up to when the alley has been simulated.
@@ -180,6 +185,7 @@ impl Shell {
             renderer,
             stock,
             overlay,
+            meter: Meter::new(),
             keys: Keys::default(),
             session,
             simulated,
@@ -192,6 +198,7 @@ impl Shell {
         let Some(stage) = &mut self.stage else {
             return Ok(());
         };
+        let begun = Instant::now();
         let late = stage.simulated.elapsed().as_secs_f64();
         if late > LONGEST_CATCH_UP_S {
             stage.simulated += Duration::from_secs_f64(late - LONGEST_CATCH_UP_S);
@@ -200,7 +207,8 @@ impl Shell {
         let device = self.player.due(count);
         for _ in 0..count {
             let input = device.next(stage.session.game());
-            stage.session.frame(input)?;
+            let watch = stage.meter.stopwatch();
+            stage.session.frame_watched(input, watch)?;
             stage.overlay.notice(stage.session.game());
         }
         stage.session.flush()?;
@@ -208,7 +216,14 @@ impl Shell {
         if device.is_done() || self.stop.load(std::sync::atomic::Ordering::Relaxed) {
             events.exit();
         }
-        stage.draw()
+        let drawn = Instant::now();
+        stage.draw()?;
+        let rate = stage.display_hz();
+        let game = stage.session.game();
+        if let Some(warning) = stage.meter.frame((begun, drawn), game, rate) {
+            eprintln!("warning: {}", warning.replace('\n', " "));
+        }
+        Ok(())
     }
 
     fn command(&mut self, command: Command, events: &ActiveEventLoop) {
@@ -217,6 +232,11 @@ impl Shell {
             Command::Help => {
                 if let Some(stage) = &mut self.stage {
                     stage.overlay.toggle_help();
+                }
+            }
+            Command::Cost => {
+                if let Some(stage) = &mut self.stage {
+                    stage.overlay.toggle_cost();
                 }
             }
             Command::Desk(event) => {
@@ -242,6 +262,13 @@ impl Shell {
 }
 
 impl Stage {
+    /// Pictures that the display shows a second.
+    fn display_hz(&self) -> f64 {
+        let monitor = self.target.window().current_monitor();
+        let rate = monitor.and_then(|monitor| monitor.refresh_rate_millihertz());
+        rate.map_or(USUAL_HZ, |millihertz| f64::from(millihertz) / 1e3)
+    }
+
     fn draw(&mut self) -> Result<()> {
         let game = self.session.game();
         let visible = game.visible();
@@ -257,7 +284,8 @@ impl Stage {
             rotation: rotation.as_quat(),
             fov,
         };
-        self.overlay.show(game, &mut self.target)?;
+        self.overlay
+            .show(game, self.meter.report(), &mut self.target)?;
         self.target
             .draw(&mut self.renderer, &scene, &[view])
             .context("cannot draw into the window")?;

@@ -16,6 +16,7 @@ right drag       look around; also A D and arrows
 W S              walk, walk back
 1 2              the Red and the Blue button
 F1               this help
+F3               what it costs
 Esc              end and save
 
 gamepad          left stick the hand, right stick head and arm,
@@ -35,7 +36,7 @@ enum Meaning {
 }
 
 /// Every key that means something.
-const KEYS: [(KeyCode, Meaning); 12] = [
+const KEYS: [(KeyCode, Meaning); 13] = [
     (KeyCode::KeyW, Meaning::Hold(Hold::Forward)),
     (KeyCode::KeyS, Meaning::Hold(Hold::Back)),
     (KeyCode::KeyA, Meaning::Hold(Hold::TurnLeft)),
@@ -47,6 +48,7 @@ const KEYS: [(KeyCode, Meaning); 12] = [
     (KeyCode::Digit2, BLUE),
     (KeyCode::Numpad2, BLUE),
     (KeyCode::F1, Meaning::Once(Command::Help)),
+    (KeyCode::F3, Meaning::Once(Command::Cost)),
     (KeyCode::Escape, Meaning::Once(Command::End)),
 ];
 
@@ -65,6 +67,8 @@ pub enum Command {
     LetGo,
     /// Show or hide the help.
     Help,
+    /// Show or hide what frames and physics cost.
+    Cost,
     /// End the session and save.
     End,
 }

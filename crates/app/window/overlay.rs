@@ -5,6 +5,7 @@ use game::{Button, EventKind, Game};
 use image::RgbaImage;
 use renderer::{Anchor, TextBlock, TextPainter, WindowTarget};
 
+use super::cost::Report;
 use super::keys;
 
 /// What the text says; painted anew only when it changes.
@@ -13,6 +14,7 @@ struct Words {
     news: String,
     sheet: String,
     help: bool,
+    cost: Option<String>,
 }
 
 /// The text over the window.
@@ -21,6 +23,7 @@ pub struct Overlay {
     words: Words,
     shown: Option<Words>,
     playing: Option<Button>,
+    has_cost: bool,
 }
 
 impl Overlay {
@@ -35,12 +38,18 @@ impl Overlay {
             },
             shown: None,
             playing: None,
+            has_cost: false,
         }
     }
 
     /// Shows or hides the keys.
     pub fn toggle_help(&mut self) {
         self.words.help = !self.words.help;
+    }
+
+    /// Shows or hides what frames and physics cost.
+    pub fn toggle_cost(&mut self) {
+        self.has_cost = !self.has_cost;
     }
 
     /// Takes notice of what the last frame brought.
@@ -59,7 +68,13 @@ impl Overlay {
     ///
     /// # Errors
     /// When the text cannot be painted.
-    pub fn show(&mut self, game: &Game, target: &mut WindowTarget) -> Result<()> {
+    pub fn show(
+        &mut self,
+        game: &Game,
+        cost: Option<&Report>,
+        target: &mut WindowTarget,
+    ) -> Result<()> {
+        self.words.cost = cost.filter(|_| self.has_cost).map(Report::text);
         let sheet = |button| format!("{button}\n{}", game.score_sheet(button));
         self.words.sheet = self.playing.map(sheet).unwrap_or_default();
         if self.shown.as_ref() == Some(&self.words) {
@@ -78,6 +93,9 @@ impl Overlay {
                 Anchor::TopRight,
                 self.paint(&self.words.sheet.clone(), 13.0, true)?,
             ));
+        }
+        if let Some(cost) = self.words.cost.clone() {
+            images.push((Anchor::BottomRight, self.paint(&cost, 12.0, true)?));
         }
         if self.words.help {
             images.push((Anchor::Center, self.paint(keys::HELP, 17.0, true)?));

@@ -29,7 +29,7 @@ mod visible;
 mod walk;
 
 use glam::DVec3;
-use physics::Pose;
+use physics::{Pose, Stopwatch, Unwatched};
 
 pub use bare_alley::{BareAlley, BareAlleyError};
 pub use condition::{Button, Conditions};
@@ -180,6 +180,11 @@ impl Game {
 
     /// Consumes one frame's input and advances the alley by `input.steps` physics steps.
     pub fn step(&mut self, input: &Input) {
+        self.step_watched(input, &mut Unwatched);
+    }
+
+    /// The same, while `watch` is told the stages of the physics; the game is the same with every watch.
+    pub fn step_watched(&mut self, input: &Input, watch: &mut impl Stopwatch) {
         self.events.clear();
         self.track_head(input);
         self.walk(input);
@@ -191,7 +196,7 @@ impl Game {
             self.clear_pit();
             self.run_pinsetter();
             self.return_strays();
-            self.room.world.step();
+            self.room.world.step_watched(watch);
             self.steps += 1;
             self.notice_impacts();
             self.watch_foul_line();

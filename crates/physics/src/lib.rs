@@ -82,5 +82,6 @@ pub use pose::Pose;
 pub use response::Response;
 pub use shape::{Shape, ShapeError};
 pub use step::plan::{PlannedStage, Stage};
+pub use step::{Stopwatch, Unwatched};
 pub use surface::{PairContact, Surface};
 pub use world::{BodyId, Effort, Impact, Settings, SettingsError, World};

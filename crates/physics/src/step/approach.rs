@@ -31,6 +31,8 @@ pub(crate) struct Found {
     pub gap: f64,
     /// Times looked at.
     pub looks: u32,
+    /// Iterations of the detection in all searches for a normal.
+    pub iterations: u32,
 }
 
 /// Two parts on their way through a step: proven apart until `time`.
@@ -60,6 +62,7 @@ pub(crate) struct Approach<'a> {
     proven: f64,
     /// Whether `normal` was found at `time`, and is not an earlier one.
     fresh: bool,
+    iterations: u32,
 }
 
 /// What the gap along one normal tells.
@@ -98,6 +101,7 @@ impl<'a> Approach<'a> {
                     normal: known.normal,
                     gap: rough,
                     looks: 1,
+                    iterations: 0,
                 };
             }
         }
@@ -122,6 +126,7 @@ impl<'a> Approach<'a> {
             gap,
             proven: gap,
             fresh: false,
+            iterations: 0,
         };
         approach.advance()
     }
@@ -163,6 +168,7 @@ impl<'a> Approach<'a> {
             normal: self.normal,
             gap: self.proven,
             looks,
+            iterations: self.iterations,
         }
     }
 
@@ -210,6 +216,7 @@ impl<'a> Approach<'a> {
             .world
             .search(&self.placed.0, &self.placed.1, self.normal);
         (self.normal, self.gap, self.fresh) = (found.normal, found.gap, true);
+        self.iterations += found.iterations;
         (found.point_a + found.point_b) * 0.5
     }
 

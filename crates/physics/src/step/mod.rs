@@ -46,6 +46,24 @@ pub(crate) const PARTING: f64 = 5e-3;
 /// Gap beyond which a lasting contact is given up [m].
 pub(crate) const RELEASE: f64 = 1e-5;
 
+/// A caller's clock: the crate has none, and a step without one asks for none.
+pub trait Stopwatch {
+    /// The stages of a step begin.
+    fn begin(&mut self);
+    /// A stage has ended; the next one begins.
+    fn lap(&mut self, stage: Stage);
+}
+
+/// Measures nothing.
+pub struct Unwatched;
+
+impl Stopwatch for Unwatched {
+    #[inline]
+    fn begin(&mut self) {}
+    #[inline]
+    fn lap(&mut self, _: Stage) {}
+}
+
 /// How far a lasting contact may sink in a step before it is struck again [m].
 pub(crate) fn sink(rocks: bool) -> f64 {
     if rocks { SINK_OF_BASE } else { SINK }
@@ -54,6 +72,11 @@ pub(crate) fn sink(rocks: bool) -> f64 {
 impl World {
     /// Advances by one fixed step of `1 / step_hz` seconds.
     pub fn step(&mut self) {
+        self.step_watched(&mut Unwatched);
+    }
+
+    /// The same step, which tells `watch` when each stage begins and ends; what it does with that changes nothing here.
+    pub fn step_watched(&mut self, watch: &mut impl Stopwatch) {
         let dt = self.dt();
         self.impacts.clear();
         self.steps += 1;
@@ -61,8 +84,10 @@ impl World {
         if self.is_quiet() {
             return;
         }
+        watch.begin();
         for i in 0..self.plan.stages.len() {
-            match self.plan.stages[i] {
+            let stage = self.plan.stages[i];
+            match stage {
                 Stage::Drive => self.aim_driven(dt),
                 Stage::Slow | Stage::SlowAgain => self.slow_in_air(dt),
                 Stage::WakeHeld => self.wake_driven_neighbours(),
@@ -72,6 +97,7 @@ impl World {
                 Stage::Arrive => self.arrive(dt),
                 Stage::Sleep => self.fall_asleep(dt),
             }
+            watch.lap(stage);
         }
         self.dismiss();
     }

@@ -75,6 +75,8 @@ impl World {
             }
         }
         self.scratch.served = served;
+        self.effort.due += self.scratch.due.len() as u64;
+        self.effort.near += self.pairs.count() as u64;
         self.scratch.due.sort_unstable();
     }
 

@@ -145,6 +145,11 @@ impl Pairs {
         }
     }
 
+    /// Pairs of bodies that are near each other.
+    pub fn count(&self) -> usize {
+        self.list.len() - self.free.len()
+    }
+
     pub fn get(&self, pair: u32) -> &Pair {
         &self.list[pair as usize]
     }

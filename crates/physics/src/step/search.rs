@@ -77,6 +77,7 @@ impl World {
             let known = self.pairs.get(pair).parts.clearances[part];
             if known - ways > reach {
                 clearance = clearance.min(known);
+                self.effort.spared += 1;
                 continue;
             }
             let key = Key {
@@ -87,6 +88,7 @@ impl World {
             };
             let found = Approach::search(self, key, (t0, until), &starts, &ends);
             self.effort.looks += u64::from(found.looks);
+            self.effort.iterations += u64::from(found.iterations);
             if self.plan.has(Effect::Continuous) {
                 self.effort.work.add(Effect::Continuous, 1);
             }
