@@ -422,11 +422,8 @@ fn colours(picture: &image::RgbImage) -> usize {
     coarse.collect::<std::collections::BTreeSet<_>>().len()
 }
 
-#[test]
-fn a_person_bowls_a_frame_with_mouse_and_keys() {
-    let folder = support::fresh_folder("window");
-    let screen = Screen::open(&folder);
-    let recording = folder.join("recording");
+/// The program in a window that fills the screen, recording into a folder.
+fn open_window(screen: &Screen, recording: &Path) -> Process {
     let program = Command::new(env!("CARGO_BIN_EXE_bowling"))
         .args([
             "play",
@@ -437,7 +434,7 @@ fn a_person_bowls_a_frame_with_mouse_and_keys() {
             "--no-video",
             "--out",
         ])
-        .arg(&recording)
+        .arg(recording)
         .env("DISPLAY", &screen.display)
         .env_remove("WAYLAND_DISPLAY")
         .current_dir(env!("CARGO_MANIFEST_DIR"))
@@ -445,7 +442,7 @@ fn a_person_bowls_a_frame_with_mouse_and_keys() {
         .stderr(Stdio::piped())
         .spawn()
         .expect("the program starts");
-    let mut program = Process(program);
+    let program = Process(program);
     let window = screen.act(&["search", "--sync", "--name", "^Bowling$"]);
     screen.act(&[
         "windowsize",
@@ -455,6 +452,52 @@ fn a_person_bowls_a_frame_with_mouse_and_keys() {
     ]);
     screen.act(&["windowmove", &window, "0", "0"]);
     screen.act(&["windowfocus", "--sync", &window]);
+    program
+}
+
+/// Letters on the dark ground of a text in the lower right corner: nearly white pixels there.
+fn letters(screen: &Screen) -> usize {
+    let picture = screen.shot();
+    let corner = picture
+        .enumerate_pixels()
+        .filter(|(x, y, _)| *x > 330 && *y > 200);
+    corner
+        .filter(|(_, _, pixel)| pixel.0.iter().all(|part| *part > 200))
+        .count()
+}
+
+#[test]
+fn f3_shows_what_it_costs_and_hides_it_again() {
+    let folder = support::fresh_folder("window-cost");
+    let screen = Screen::open(&folder);
+    let recording = folder.join("recording");
+    let _program = open_window(&screen, &recording);
+    let mut eyes = Eyes::open(&recording.join("journal.jsonl"));
+    eyes.look_for("the first second", |game, _| {
+        (game.time() > 1.0).then_some(())
+    });
+    wait_for("the picture without letters in the corner", || {
+        (colours(&screen.shot()) > 20 && letters(&screen) < 50).then_some(())
+    });
+    screen.act(&["key", "F3"]);
+    // Twelve lines and more, of letters of some ten pixels each.
+    wait_for("the figures", || (letters(&screen) > 800).then_some(()));
+    let picture = screen.shot();
+    picture
+        .save(folder.join("cost.png"))
+        .expect("the picture can be kept");
+    screen.act(&["key", "F3"]);
+    wait_for("the figures to go", || {
+        (letters(&screen) < 50).then_some(())
+    });
+}
+
+#[test]
+fn a_person_bowls_a_frame_with_mouse_and_keys() {
+    let folder = support::fresh_folder("window");
+    let screen = Screen::open(&folder);
+    let recording = folder.join("recording");
+    let mut program = open_window(&screen, &recording);
 
     let eyes = Eyes::open(&recording.join("journal.jsonl"));
     let mut person = Person {

@@ -5,7 +5,10 @@ mod support;
 use std::sync::Arc;
 
 use glam::{DQuat, DVec3};
-use physics::{Compound, Effect, Effects, Motion, Pose, Settings, SettingsError, Shape, World};
+use physics::{
+    Compound, Effect, Effects, Effort, Motion, Pose, Settings, SettingsError, Shape, Stage,
+    Stopwatch, World,
+};
 use support::*;
 
 #[test]
@@ -418,4 +421,63 @@ fn balls_that_strike_the_same_ground_in_one_step_all_bounce() {
     }
     // A shared count of impacts stopped half of them dead.
     assert!((world.energy() / before - 1.0).abs() < 1e-12);
+}
+
+/// Keeps what it is told; its `u64` counts the beginnings.
+#[derive(Default)]
+struct Log(Vec<Stage>, u64);
+
+impl Stopwatch for Log {
+    fn begin(&mut self) {
+        self.1 += 1;
+    }
+
+    fn lap(&mut self, stage: Stage) {
+        self.0.push(stage);
+    }
+}
+
+#[test]
+fn a_watched_step_tells_the_stages_of_the_plan_and_changes_nothing() {
+    let m = material(0.7, 0.7);
+    let (mut world, _) = alley(Settings::default(), &composite_pin(), m);
+    throw(&mut world, m, 0.05, 1.0, 8.0);
+    let mut other = world.clone();
+    let plan: Vec<Stage> = world.plan().map(|planned| planned.stage).collect();
+    let mut log = Log::default();
+    for _ in 0..400 {
+        world.step();
+        other.step_watched(&mut log);
+    }
+    assert_eq!(world.hash(), other.hash());
+    assert_eq!(log.1, 400, "a ball that rolls keeps every step busy");
+    assert_eq!(log.0.len(), 400 * plan.len());
+    assert!(log.0.chunks(plan.len()).all(|stages| stages == plan));
+}
+
+#[test]
+fn effort_counts_tests_and_what_is_spared() {
+    let m = material(0.7, 0.7);
+    let (mut world, _) = alley(Settings::default(), &composite_pin(), m);
+    // On its way, far from everything but the lane below it.
+    throw(&mut world, m, 0.05, 8.0, 5.0);
+    for _ in 0..720 {
+        world.step();
+    }
+    let rolling = world.effort();
+    assert!(rolling.due < rolling.near, "most pairs wait: {rolling:?}");
+    for _ in 0..720 {
+        world.step();
+    }
+    let hit = world.effort();
+    let spent = |of: fn(&Effort) -> u64| (of(&rolling), of(&hit) - of(&rolling));
+    // A ball on a box is a closed form; cones and ellipsoids of pins are searched.
+    let (before, among_pins) = spent(|effort| effort.iterations);
+    assert!(
+        among_pins > 100 && among_pins > 10 * before,
+        "{before}, {among_pins}"
+    );
+    let (_, spared) = spent(|effort| effort.spared);
+    assert!(spared > 0 && spared < 5 * 10 * 10 * hit.due, "{spared}");
+    assert!(hit.looks >= hit.due / 10, "{hit:?}");
 }
