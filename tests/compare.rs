@@ -76,8 +76,7 @@ fn shot() -> &'static (PathBuf, serde_json::Value) {
 #[test]
 fn a_session_s_throw_falls_again_under_its_own_condition() {
     let (session, _) = recording();
-    let arguments =
-        "--conditions 101,red,111 --base red --duration 9 --no-video --tile 64 --at 0.4,9";
+    let arguments = "--conditions 101,red,111 --base red --no-video --tile 64 --at 0.4,3";
     let arguments: Vec<&str> = arguments.split(' ').collect();
     let (folder, printed) = compare("compare-session", session, &arguments);
     let rows = table(&folder.join("compare.csv"));
@@ -154,7 +153,7 @@ fn friction_parts_paths_when_the_formula_says() {
 #[test]
 fn a_shot_s_file_is_thrown_again_to_the_same_pins() {
     let (file, result) = shot();
-    let arguments = "--conditions 011,111 --duration 4 --no-video --tile 64 --at 0.2";
+    let arguments = "--conditions 011,111 --no-video --tile 64 --at 0.2";
     let arguments: Vec<&str> = arguments.split(' ').collect();
     let (folder, _) = compare("compare-shot-again", file, &arguments);
     let rows = table(&folder.join("compare.csv"));

@@ -30,6 +30,9 @@ use sweep::Swept;
 use table::Comparison;
 use thrown::Thrown;
 
+/// How long throws are followed of which nothing says when they were over [s].
+const USUAL_S: f64 = 8.0;
+
 /// Compares, prints tables, and writes tables, figures and pictures into the folder.
 ///
 /// Nothing is written before all throws are over, and each file appears only once it is whole.
@@ -37,15 +40,15 @@ use thrown::Thrown;
 /// # Errors
 /// When recording, conditions or folder cannot be used, nothing draws, or somebody interrupts.
 pub fn compare(arguments: &CompareArguments, root: &Path) -> Result<()> {
+    let stop = interruption()?;
+    let thrown = Thrown::read(arguments)?;
+    let duration = duration(arguments, &thrown);
     let at = arguments.at.iter().copied().fold(0.0, f64::max);
-    if at > arguments.duration {
-        let duration = arguments.duration;
+    if at > duration {
         bail!(unusable(format!(
             "--at {at} lies after the end: give times up to {duration} s, or a longer --duration"
         )));
     }
-    let stop = interruption()?;
-    let thrown = Thrown::read(arguments)?;
     let mut progress = Progress::new();
     let done = if arguments.sweep.is_empty() {
         conditions(arguments, root, &thrown, &stop, &mut progress)
@@ -56,6 +59,12 @@ pub fn compare(arguments: &CompareArguments, root: &Path) -> Result<()> {
     };
     progress.end();
     done
+}
+
+/// How long throws are followed [s]: as asked for, else until the recorded one was counted.
+fn duration(arguments: &CompareArguments, thrown: &Thrown) -> f64 {
+    let duration = arguments.duration.or(thrown.counted);
+    duration.unwrap_or(USUAL_S).clamp(0.1, 60.0)
 }
 
 /// Opens the folder before the work, and takes it back when the work fails.
@@ -158,7 +167,7 @@ fn courses(
         check(stop)?;
         progress.say(&format!("condition {name}: {} of {count}", index + 1));
         let pin = BareAlley::pin_shape(config)?;
-        let course = Course::of(thrown, config, pin, arguments.duration)
+        let course = Course::of(thrown, config, pin, duration(arguments, thrown))
             .with_context(|| format!("condition {name}"))?;
         courses.push(course);
     }
@@ -178,7 +187,8 @@ fn sweeps(
             progress.say(text);
             check(stop)
         };
-        let swept = Swept::of(sweep, thrown, arguments.duration, &mut say)?;
+        let duration = duration(arguments, thrown);
+        let swept = Swept::of(sweep, thrown, duration, &mut say)?;
         progress.end();
         print(&swept.text())?;
         let name = swept.name;
@@ -188,7 +198,6 @@ fn sweeps(
             )));
         }
         files.push((format!("{name}.csv"), swept.csv().into_bytes()));
-        let duration = arguments.duration;
         files.push((
             format!("{name}.svg"),
             figure::svg(&swept, duration)?.into_bytes(),

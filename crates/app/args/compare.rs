@@ -45,9 +45,9 @@ pub struct CompareArguments {
     #[arg(long, value_name = "NAME=FROM..TO:STEP", value_parser = sweep)]
     pub sweep: Vec<Sweep>,
 
-    /// Simulated time from the release on, in seconds.
-    #[arg(long, value_name = "S", allow_negative_numbers = true, default_value_t = 8.0, value_parser = within(0.1, 60.0, "seconds"))]
-    pub duration: f64,
+    /// Simulated time from the release on, in seconds [default: until the pins were counted, or the recording ends].
+    #[arg(long, value_name = "S", allow_negative_numbers = true, value_parser = within(0.1, 60.0, "seconds"))]
+    pub duration: Option<f64>,
 
     /// Instants of the contact sheet, in seconds after the release [default: two on the way, two at the pins, the end].
     #[arg(long, value_name = "S,S,..", value_delimiter = ',', allow_negative_numbers = true, value_parser = within(0.0, 60.0, "seconds"))]

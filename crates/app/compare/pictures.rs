@@ -26,6 +26,8 @@ const MARGIN: u32 = 96;
 /// Width of a picture of the video [pixels], four beside each other.
 const VIDEO_TILE: u32 = 240;
 const VIDEO_ACROSS: usize = 4;
+/// A longer video shows little but pins that lie [s].
+const LONGEST_S: f64 = 8.0;
 /// Vertical field of view [rad]: a ball on the lane fills some pixels of a small picture, and the pins fit in.
 const EYE_FOV: f32 = 0.62;
 const DECK_FOV: f32 = 0.85;
@@ -170,7 +172,7 @@ impl Gallery<'_> {
         let across = count.min(VIDEO_ACROSS) as u32;
         let down = (count as u32).div_ceil(across);
         let (width, height) = (across * size.0, down * (size.1 + TEXT) + TEXT);
-        let frames = (self.base().duration() * f64::from(SHOTS_PER_SECOND)) as u32;
+        let frames = (self.base().duration().min(LONGEST_S) * f64::from(SHOTS_PER_SECOND)) as u32;
         let times = (0..=frames).map(|frame| f64::from(frame) / f64::from(SHOTS_PER_SECOND));
         let mut lines: Vec<String> = (0..count).map(|i| self.heading(i)[0].clone()).collect();
         lines.extend(times.clone().map(|time| self.place(time)));

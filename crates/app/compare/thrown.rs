@@ -38,6 +38,8 @@ pub struct Thrown {
     pub pins: Vec<(u8, (f64, f64))>,
     /// Pins that fell when it was recorded.
     pub fallen: Option<usize>,
+    /// When they were counted, after the release [s].
+    pub counted: Option<f64>,
     /// Time since the release [s], and `world_from_head` from then on; never empty.
     heads: Vec<(f64, Pose)>,
 }
@@ -103,7 +105,7 @@ fn of_session(arguments: &CompareArguments) -> Result<Thrown> {
     }
     let mut watcher = Watcher {
         wanted,
-        duration: arguments.duration,
+        duration: arguments.duration.unwrap_or(0.0),
         seen: 0,
         released: 0.0,
         candidate: None,
@@ -187,6 +189,7 @@ impl Watcher {
                 EventKind::Settled { fallen, .. } => {
                     if let Some(thrown) = &mut self.thrown {
                         thrown.fallen = thrown.fallen.or(Some(fallen.len()));
+                        thrown.counted = thrown.counted.or(Some(game.time() - self.released));
                     }
                 }
                 _ => {}
@@ -238,6 +241,7 @@ impl Candidate {
             angular: self.angular,
             pins: self.pins,
             fallen: None,
+            counted: None,
         }
     }
 }
@@ -267,6 +271,12 @@ struct HeadRelease {
     angle: f64,
     revs: f64,
     axis_rotation: f64,
+}
+
+/// A state of the file of a shot.
+#[derive(Deserialize)]
+struct State {
+    time: f64,
 }
 
 /// Last line of the file of a shot.
@@ -299,6 +309,8 @@ fn of_shot(path: &Path) -> Result<Thrown> {
     let tail: Tail = serde_json::from_str(last).with_context(|| {
         format!("{name}: the last line is no result, so the file was cut short")
     })?;
+    let states = text.lines().rev().skip(1);
+    let state = states.map(serde_json::from_str::<State>).next();
     let config = head.settings;
     config.check().with_context(|| name.to_string())?;
     let mut pins = Vec::new();
@@ -337,6 +349,7 @@ fn of_shot(path: &Path) -> Result<Thrown> {
         angular,
         pins: spots.collect(),
         fallen: Some(tail.result.fallen.len()),
+        counted: state.and_then(Result::ok).map(|state| state.time),
         heads: vec![(0.0, onlooker(&config))],
         config,
     })
