@@ -185,7 +185,7 @@ impl Shape {
                         ((target - p).dot(q - p) / (q - p).length_squared()).clamp(0.0, 1.0);
                     return p + (q - p) * along;
                 }
-                self.tip(n).point
+                self.piece(u32::from(slope > 0.0)).point(n)
             }
             Kind::TruncatedEllipsoid { .. } => {
                 let across = (n.x * n.x + n.z * n.z).sqrt();

@@ -167,7 +167,8 @@ impl<'a> Placed<'a> {
 /// Signed gap between two placed shapes.
 ///
 /// `start` is the normal of an earlier answer for the pair, if any; without it the search starts from the line of
-/// centres, as in the paper. The shapes may be given in any common frame.
+/// centres, as in the paper. The shapes may be given in any common frame. A start that has grown old costs time only: an
+/// overlap that it leads to and nothing proves is looked for again without it.
 ///
 /// Coincident centres have no line of centres: the search then starts from +y, and the answer is a valid separating
 /// direction, the same every time. Two half-spaces have no finite gap; they answer with minus infinity.

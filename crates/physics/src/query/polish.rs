@@ -84,7 +84,7 @@ pub(super) fn separation(
     // A shallow overlap leaves no room for a better way out, and an unfinished climb no budget to follow one.
     let spent = !known.converged && known.iterations >= limits.iteration_cap;
     if spent || -known.best.s <= shallow {
-        let balls = bounds::overlap(a, b, (known.points.0 + known.points.1) * 0.5);
+        let balls = bounds::overlap(a, b, known.points.0, known.points.1);
         return known.answer(balls.map(|up| up.max(known.best.s)));
     }
     let start = corner(a, b, known.best.n);
@@ -101,7 +101,7 @@ pub(super) fn separation(
     }
     let room = growth.inner.map(|inner| -inner - known.best.s);
     known.converged &= room.is_some_and(|room| room <= 2.0 * shallow);
-    let balls = bounds::overlap(a, b, (known.points.0 + known.points.1) * 0.5);
+    let balls = bounds::overlap(a, b, known.points.0, known.points.1);
     let inner = growth.inner.map(|inner| -inner);
     let upper = balls.into_iter().chain(inner).reduce(f64::min);
     known.answer(upper.map(|up| up.max(known.best.s)))

@@ -13,6 +13,8 @@ use crate::shape::Kind;
 const THIN: f64 = 100.0;
 /// A converged answer's interval is no wider than this when apart, in units of the pair's size.
 const WIDEST: f64 = 5e-8;
+/// An overlap deeper than this that nothing proves is doubted, in units of the pair's size.
+const DOUBTFUL: f64 = 1e-6;
 
 /// Order of the families: a pair is searched with the lower one first, so that each has one search.
 fn family(kind: &Kind) -> u8 {
@@ -135,9 +137,16 @@ impl Task<'_> {
         let thin = is_thin(&self.a.shape.kind) || is_thin(&self.b.shape.kind);
         let found = match self.start {
             Some(start) => starts::from_known(&pair, start, goal, thin),
-            None => starts::from_nothing(&pair, goal, thin),
+            None => starts::from_nothing(&pair, goal, thin, false),
         };
-        self.answer(&pair, &found, radii, thin)
+        let answer = self.answer(&pair, &found, radii, thin);
+        // Without a start all that is promising about thin shapes has been looked at, and most has no ball in it.
+        let doubtful = answer.gap < -DOUBTFUL * pair.size && answer.upper.is_none();
+        if doubtful && (found.local || !thin) && answer.iterations < goal.cap {
+            let found = starts::in_doubt(&pair, found, goal, thin);
+            return self.answer(&pair, &found, radii, thin);
+        }
+        answer
     }
 
     #[inline(always)]
@@ -160,7 +169,7 @@ impl Task<'_> {
             let distance = (pair.offset - core_a - core_b).length();
             Some((distance - radii.0 - radii.1).max(gap))
         } else {
-            bounds::overlap(self.a, self.b, (point_a + point_b) * 0.5).map(|up| up.max(gap))
+            bounds::overlap(self.a, self.b, point_a, point_b).map(|up| up.max(gap))
         };
         // Of needles and plates rounding may leave more than the search saw.
         let width = upper.map_or(0.0, |upper| upper - gap);

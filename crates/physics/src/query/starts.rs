@@ -49,7 +49,7 @@ pub(super) fn from_known<A: Core, B: Core>(
         };
     }
     let cap = goal.cap - summit.iterations;
-    let mut found = from_nothing(pair, Goal { cap, ..goal }, thin);
+    let mut found = from_nothing(pair, Goal { cap, ..goal }, thin, false);
     found.summit.iterations += summit.iterations;
     if summit.s > found.summit.s {
         let iterations = found.summit.iterations;
@@ -63,9 +63,15 @@ pub(super) fn from_known<A: Core, B: Core>(
 }
 
 /// Searches without a known normal: from the line of centres, weighed with the cores' extents, and if they overlap
-/// from the normals at which the other maxima of s lie.
+/// from the normals at which the other maxima of s lie; `wide`: also from those far below what was found, for which an
+/// overlap that is not proven is reason enough.
 #[inline]
-pub(super) fn from_nothing<A: Core, B: Core>(pair: &Pair<A, B>, goal: Goal, thin: bool) -> Found {
+pub(super) fn from_nothing<A: Core, B: Core>(
+    pair: &Pair<A, B>,
+    goal: Goal,
+    thin: bool,
+    wide: bool,
+) -> Found {
     let first = Search::run(pair, first_normal(pair), State::Free, goal);
     if first.s > 0.0 && first.converged {
         // s is concave where it is positive: there is no other maximum.
@@ -83,7 +89,30 @@ pub(super) fn from_nothing<A: Core, B: Core>(pair: &Pair<A, B>, goal: Goal, thin
     if thin {
         candidates.collect_thin(pair);
     }
-    candidates.climb(pair, first, goal)
+    candidates.climb(pair, first, goal, wide)
+}
+
+/// Searches everywhere for a way out of an overlap that nothing proves: it may be an old way out of shapes that have
+/// passed each other, or the wrong one of shapes that all but touch.
+#[cold]
+#[inline(never)]
+pub(super) fn in_doubt<A: Core, B: Core>(
+    pair: &Pair<A, B>,
+    found: Found,
+    goal: Goal,
+    thin: bool,
+) -> Found {
+    let used = found.summit.iterations;
+    let cap = goal.cap - used;
+    let mut other = from_nothing(pair, Goal { cap, ..goal }, thin, true);
+    if found.summit.s > other.summit.s {
+        other.summit = Summit {
+            iterations: other.summit.iterations,
+            ..found.summit
+        };
+    }
+    other.summit.iterations += used;
+    other
 }
 
 /// `(M_a + M_b)^-1 d` for the matrices of the cores' extents: exact for two ellipsoids of one shape.
@@ -101,9 +130,18 @@ fn first_normal<A: Core, B: Core>(pair: &Pair<A, B>) -> DVec3 {
 
 impl Candidates {
     /// Climbs from the most promising candidates with what is left of the budget.
-    fn climb<A: Core, B: Core>(&mut self, pair: &Pair<A, B>, first: Summit, goal: Goal) -> Found {
+    fn climb<A: Core, B: Core>(
+        &mut self,
+        pair: &Pair<A, B>,
+        first: Summit,
+        goal: Goal,
+        wide: bool,
+    ) -> Found {
         let list = &mut self.list[..self.count];
-        let margin = (MARGIN * pair.size).min(2.0 * first.s.abs() + 0.01 * pair.size);
+        let mut margin = MARGIN * pair.size;
+        if !wide {
+            margin = margin.min(2.0 * first.s.abs() + 0.01 * pair.size);
+        }
         let mut best = first;
         let mut used = first.iterations;
         let mut capped = !first.converged;

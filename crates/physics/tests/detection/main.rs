@@ -6,6 +6,8 @@ mod accuracy;
 mod closed;
 /// Bodies with one centre.
 mod coincident;
+/// Overlaps that are none.
+mod doubt;
 /// Faces, lines, rims and apexes that meet exactly, and one unit in the last place off.
 mod exact;
 /// Sizes of any magnitude.
