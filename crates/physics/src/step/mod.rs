@@ -13,6 +13,7 @@ mod drag;
 mod events;
 mod grip;
 mod islands;
+mod leap;
 mod patch;
 mod queue;
 mod rest;
