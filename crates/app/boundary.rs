@@ -2,13 +2,15 @@
 
 use std::fmt;
 
-use game::{Input, Tracked, Velocity};
+use game::{Input, Tracked, TriggerChange, Velocity};
 use glam::{DQuat, DVec3};
 use serde::{Deserialize, Serialize};
 
 /// Positions [m] and velocities [m/s, rad/s] are kept to this step: a thousand times finer than any
 /// tracker, and it makes a journal half as long.
 const STEPS_PER_UNIT: f64 = 1e6;
+/// Ages are kept to the nanosecond, which is what runtimes count in.
+const AGE_STEPS: f64 = 1e9;
 /// Rotations are kept to this step, far within what counts as a rotation.
 const ROTATION_STEPS: f64 = 1e8;
 
@@ -55,6 +57,7 @@ impl Boundary {
         Input {
             head: admit_tracked(input.head, &mut self.refused.head),
             hand: admit_tracked(input.hand, &mut self.refused.hand),
+            trigger_change: self.admit_change(input.trigger_change),
             trigger: if trigger_is_good {
                 rounded(input.trigger, STEPS_PER_UNIT)
             } else {
@@ -62,6 +65,19 @@ impl Boundary {
             },
             ..input
         }
+    }
+
+    /// A change whose hand or age is unusable counts as none: the trigger then opened at the frame's own instant.
+    fn admit_change(&mut self, change: Option<TriggerChange>) -> Option<TriggerChange> {
+        let change = change?;
+        let hand = admit_tracked(Some(change.hand), &mut self.refused.hand)?;
+        let age_s = rounded(change.age_s, AGE_STEPS);
+        let change = TriggerChange { age_s, hand };
+        if !change.is_usable() {
+            self.refused.trigger += 1;
+            return None;
+        }
+        Some(change)
     }
 
     /// What was refused so far.

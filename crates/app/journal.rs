@@ -7,7 +7,7 @@
 mod read;
 mod write;
 
-use game::{Conditions, Input, Tracked, Velocity};
+use game::{Conditions, Input, Tracked, TriggerChange, Velocity};
 use glam::{DQuat, DVec3};
 use physics::Pose;
 use serde::{Deserialize, Serialize};
@@ -18,7 +18,7 @@ pub use write::Journal;
 use crate::boundary::Refused;
 
 /// Version of the lines' meaning; a program refuses journals of another one.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// One line's content.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -30,6 +30,8 @@ pub enum Entry {
     Input(InputLine),
     /// Something that happened in the frame of the last input line.
     Event(serde_json::Value),
+    /// What the device said of itself in that frame, or before the first. The game never reads it.
+    Device(serde_json::Value),
     /// The last line of a session that was closed in order.
     End(End),
 }
@@ -44,7 +46,7 @@ pub struct Header {
     pub program: String,
     /// Commit that it was built from, or `unknown`.
     pub commit: String,
-    /// Who bowled: `desk` or `script`.
+    /// Who bowled: `headset`, `desk` or `script`.
     pub device: String,
     /// Seed of the scripted participant.
     pub seed: u64,
@@ -83,12 +85,20 @@ pub fn hash_text(hash: u64) -> String {
     format!("{hash:016x}")
 }
 
-/// One input as an array: steps, buttons, trigger, head, hand.
+/// One input as an array: steps, buttons, trigger, head, hand, and the trigger's last change where it is known.
 ///
 /// Buttons are a sum: 1 walk forward, 2 walk back, 4 Red, 8 Blue. Head and hand are `null` when not
-/// tracked, else position, rotation (x, y, z, w) and, when measured, linear and angular velocity.
+/// tracked, else position, rotation (x, y, z, w) and, when measured, linear and angular velocity. The change is its age in
+/// seconds and the hand then; it is left out where there is none.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct InputLine(u32, u8, f64, Option<TrackedLine>, Option<TrackedLine>);
+pub struct InputLine(
+    u32,
+    u8,
+    f64,
+    Option<TrackedLine>,
+    Option<TrackedLine>,
+    #[serde(default, skip_serializing_if = "Option::is_none")] Option<Box<(f64, TrackedLine)>>,
+);
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
@@ -117,13 +127,16 @@ impl From<&Input> for InputLine {
             input.trigger,
             head.map(TrackedLine::from),
             hand.map(TrackedLine::from),
+            input
+                .trigger_change
+                .map(|change| Box::new((change.age_s, TrackedLine::from(&change.hand)))),
         )
     }
 }
 
 impl From<&InputLine> for Input {
     fn from(line: &InputLine) -> Self {
-        let InputLine(steps, buttons, trigger, head, hand) = line;
+        let InputLine(steps, buttons, trigger, head, hand, change) = line;
         let pressed = |bit: u8| buttons & (1 << bit) != 0;
         Input {
             head: head.as_ref().map(Tracked::from),
@@ -134,6 +147,10 @@ impl From<&InputLine> for Input {
             press_red: pressed(2),
             press_blue: pressed(3),
             steps: *steps,
+            trigger_change: change.as_deref().map(|(age_s, hand)| TriggerChange {
+                age_s: *age_s,
+                hand: Tracked::from(hand),
+            }),
         }
     }
 }
@@ -216,11 +233,22 @@ mod tests {
             press_red: false,
             press_blue: true,
             steps: 8,
+            trigger_change: None,
         };
         let text = serde_json::to_string(&InputLine::from(&input)).expect("plain numbers");
         let line: InputLine = serde_json::from_str(&text).expect("just written");
         assert_eq!(Input::from(&line), input);
         assert!(text.starts_with("[8,9,0.30000000000000004,["), "{text}");
+        let changed = Input {
+            trigger_change: Some(TriggerChange {
+                age_s: 0.1 / 3.0,
+                hand: tracked,
+            }),
+            ..input
+        };
+        let text = serde_json::to_string(&InputLine::from(&changed)).expect("plain numbers");
+        let line: InputLine = serde_json::from_str(&text).expect("just written");
+        assert_eq!(Input::from(&line), changed);
     }
 
     #[test]

@@ -263,6 +263,7 @@ impl Desk {
             press_red,
             press_blue,
             steps: self.steps,
+            trigger_change: None,
         }
     }
 }

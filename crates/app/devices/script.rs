@@ -323,6 +323,7 @@ impl Device for Script {
             press_red: false,
             press_blue: false,
             steps: self.steps,
+            trigger_change: None,
         }
     }
 

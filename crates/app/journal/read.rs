@@ -76,6 +76,7 @@ fn parse(text: &str) -> Result<Recording, Problem> {
                     return Err((lines.number, "an event before the first input".to_owned()));
                 }
             },
+            Entry::Device(_) => {}
             Entry::End(end) => {
                 if lines.next_entry()?.is_some() {
                     return Err((

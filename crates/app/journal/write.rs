@@ -76,6 +76,14 @@ impl Journal {
         self.append(&Entry::Event(value))
     }
 
+    /// Records what the device said of itself.
+    ///
+    /// # Errors
+    /// As [`Journal::input`].
+    pub fn device(&mut self, value: serde_json::Value) -> Result<()> {
+        self.append(&Entry::Device(value))
+    }
+
     /// Closes the journal; `end.inputs` is filled in here.
     ///
     /// # Errors

@@ -71,6 +71,11 @@ pub enum EventKind {
     },
     /// The hand let go.
     Released(Release),
+    /// The hand has been lost for so long that what it held fell.
+    Dropped {
+        /// What it held.
+        model: Model,
+    },
     /// A button in the room, or its key, was pressed.
     Pressed {
         /// Which.

@@ -1,6 +1,6 @@
 //! Grab and release: the trigger closes the hand on the nearest thing within reach, and opens it.
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use hecs::Entity;
 use physics::query::{Limits, separation};
 use physics::{Motion, Pose, Shape};
@@ -9,7 +9,7 @@ use crate::Game;
 use crate::components::{Ball, Held, Journey, Pin, PinKeeper};
 use crate::event::{EventKind, Release, ReleaseSource, ReleaseVelocity};
 use crate::hand::surface_distance;
-use crate::input::Input;
+use crate::input::{Input, Velocity};
 use crate::release;
 use crate::room::Room;
 
@@ -20,10 +20,33 @@ const PUSHES: usize = 3;
 const CONTACT: f64 = 1e-6;
 
 impl Game {
-    /// Closes or opens the hand. Without a tracked hand the grip stays as it was.
-    pub(crate) fn grip(&mut self, input: &Input) {
+    /// Where the hand lets go in this frame, when the device says at which instant the trigger opened.
+    pub(crate) fn let_go_within(&self, input: &Input) -> Option<Moment> {
+        let opens = input.trigger <= self.room.config.hand.trigger_open;
+        let is_due = self.hand.held.is_some() && self.hand.is_closed && opens;
+        let change = input
+            .trigger_change
+            .filter(|change| is_due && change.is_usable())?;
+        let step_hz = self.room.config.physics.step_hz;
+        let whole = ((change.age_s * step_hz) as u32).min(input.steps);
+        // The participant may have walked on since.
+        let mut rig = self.world_from_tracking;
+        rig.position -= self.rig_velocity * change.age_s;
+        Some(Moment {
+            before_step: input.steps - whole + 1,
+            lead_s: change.age_s - f64::from(whole) / step_hz,
+            time: self.steps as f64 / step_hz + f64::from(input.steps) / step_hz - change.age_s,
+            hand: rig * change.hand.pose,
+            velocity: change.hand.velocity.map(|velocity| self.in_world(velocity)),
+            is_measured: true,
+        })
+    }
+
+    /// Closes or opens the hand. Without a tracked hand the grip stays as it was, for as long as a grip outlasts tracking.
+    pub(crate) fn grip(&mut self, input: &Input, let_go: Option<Moment>) {
         let Some(hand) = self.hand.now else {
             self.hand.candidate = None;
+            self.drop_if_lost();
             return;
         };
         let config = &self.room.config.hand;
@@ -40,9 +63,36 @@ impl Game {
                 self.grab(entity, hand);
             }
         } else if opens && self.hand.is_closed {
+            let moment = let_go.unwrap_or(Moment {
+                before_step: input.steps + 1,
+                lead_s: 0.0,
+                time: self.steps as f64 / self.room.config.physics.step_hz,
+                hand,
+                velocity: self.hand.velocity,
+                is_measured: false,
+            });
             self.hand.is_closed = false;
-            self.release(hand);
+            // Nothing is held any more where the moment came between two steps.
+            self.release(moment);
         }
+    }
+
+    /// A hand that stays lost drops what it holds: nobody can say where it has gone.
+    fn drop_if_lost(&mut self) {
+        let lost_for = self.steps - self.hand.last_seen;
+        if lost_for <= self.room.steps_in(self.room.config.hand.lost_grip_s) {
+            return;
+        }
+        let Some(held) = self.hand.held.take() else {
+            return;
+        };
+        self.hand.is_closed = false;
+        let id = self.room.id(held.entity);
+        self.room.world.set_motion(id, Motion::Dynamic);
+        self.room.world.set_velocity(id, DVec3::ZERO, DVec3::ZERO);
+        self.note_on_ball(held.entity, Some(self.head_is_beyond()));
+        let model = self.room.model(held.entity);
+        self.record(EventKind::Dropped { model });
     }
 
     /// The hand takes hold of a thing as it lies to it now.
@@ -62,16 +112,24 @@ impl Game {
     }
 
     /// The hand lets go: the thing flies on as the hand carried its centre.
-    fn release(&mut self, hand: Pose) {
+    pub(crate) fn release(&mut self, moment: Moment) {
         let Some(held) = self.hand.held.take() else {
             return;
         };
         let id = self.room.id(held.entity);
-        let position = self.room.world.body(id).pose().position;
-        let arm = position - hand.position;
         let config = &self.room.config.release;
+        let carried = grab_pose(&self.room, held, moment.hand);
+        if moment.is_measured {
+            // Later poses were guesses of the runtime at a hand that still held on.
+            self.hand
+                .history
+                .push(moment.time, moment.hand, config.window_s);
+            self.room.world.set_pose(id, carried);
+        }
+        let position = self.room.world.body(id).pose().position;
+        let arm = position - moment.hand.position;
         let (measured, fitted) =
-            release::estimate(&self.hand.history, self.hand.velocity, arm, config);
+            release::estimate(&self.hand.history, moment.velocity, arm, config);
         let (used, source) = match (measured, fitted) {
             (Some(measured), _) => (measured, ReleaseSource::Velocity),
             (None, Some(fitted)) => (fitted, ReleaseSource::Poses),
@@ -86,6 +144,7 @@ impl Game {
         };
         self.room.world.set_motion(id, Motion::Dynamic);
         self.room.world.set_velocity(id, used.linear, used.angular);
+        self.fly(held.entity, used, moment.lead_s);
         self.hand.let_go = Some(held.entity);
         let is_foul = self.head_is_beyond();
         self.note_on_ball(held.entity, Some(is_foul));
@@ -100,6 +159,25 @@ impl Game {
         }));
     }
 
+    /// Lets a thing fly freely for less than a step, or for as long as it was let go before the frame began.
+    fn fly(&mut self, entity: Entity, start: ReleaseVelocity, seconds: f64) {
+        if seconds <= 0.0 {
+            return;
+        }
+        let id = self.room.id(entity);
+        let fall = DVec3::NEG_Y * self.room.config.physics.gravity_mps2;
+        let from = self.room.world.body(id).pose();
+        let to = Pose {
+            position: from.position + (start.linear + 0.5 * fall * seconds) * seconds,
+            rotation: DQuat::from_scaled_axis(start.angular * seconds) * from.rotation,
+        };
+        let to = kept_out(&self.room, entity, to);
+        self.room.world.set_pose(id, to);
+        self.room
+            .world
+            .set_velocity(id, start.linear + fall * seconds, start.angular);
+    }
+
     /// Notes on a ball that a hand has had it, and whether the head was beyond the foul line at its release.
     fn note_on_ball(&self, entity: Entity, foul: Option<bool>) {
         if let Ok(mut ball) = self.room.ecs.get::<&mut Ball>(entity) {
@@ -108,6 +186,28 @@ impl Game {
             ball.is_spent = false;
         }
     }
+}
+
+/// The instant at which a hand lets go.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moment {
+    /// The step of the frame, from 1, before which it comes; one more than the frame has when it comes after them.
+    pub before_step: u32,
+    /// How long before that step [s].
+    pub lead_s: f64,
+    /// Since the session began [s].
+    pub time: f64,
+    /// The hand then, world frame.
+    pub hand: Pose,
+    /// Its measured velocity, world axes.
+    pub velocity: Option<Velocity>,
+    /// Whether the device measured the instant; it is that of the frame's poses else.
+    pub is_measured: bool,
+}
+
+/// Where a held thing is when the hand is at `hand`.
+fn grab_pose(room: &Room, held: Held, hand: Pose) -> Pose {
+    kept_out(room, held.entity, hand * held.hand_from_body)
 }
 
 /// The nearest thing that the hand could close on.

@@ -18,6 +18,8 @@ pub(crate) struct Hand {
     pub before: Option<Pose>,
     /// World pose at the end of the frame; `None` while it is not tracked.
     pub now: Option<Pose>,
+    /// The step at whose end it was last tracked.
+    pub last_seen: u64,
     /// Measured velocity, world axes, walking included.
     pub velocity: Option<Velocity>,
     pub history: PoseHistory,
@@ -49,7 +51,7 @@ impl Game {
     }
 
     /// Takes the hand's pose from tracking space to the world. What the tracker has lost pushes nothing; a held thing then
-    /// stays where it was, in the grip that it was in.
+    /// stays where it was, in the grip that it was in, until the loss has lasted too long.
     pub(crate) fn track_hand(&mut self, input: &Input) {
         let hand = input.hand.filter(Tracked::is_usable);
         if hand.is_some() != self.hand.now.is_some() {
@@ -64,10 +66,7 @@ impl Game {
         let now = hand.map(|tracked| rig * tracked.pose);
         self.hand.velocity = hand
             .and_then(|tracked| tracked.velocity)
-            .map(|velocity| Velocity {
-                linear: rig.transform_vector(velocity.linear) + self.rig_velocity,
-                angular: rig.transform_vector(velocity.angular),
-            });
+            .map(|velocity| self.in_world(velocity));
         self.hand.before = before
             .filter(|before| now.is_some_and(|now| !self.has_jumped(*before, now, input.steps)));
         if self.hand.before.is_none() {
@@ -75,13 +74,22 @@ impl Game {
         }
         self.hand.now = now;
         if let Some(now) = now {
-            let time =
-                (self.steps + u64::from(input.steps)) as f64 / self.room.config.physics.step_hz;
+            self.hand.last_seen = self.steps + u64::from(input.steps);
+            let time = self.hand.last_seen as f64 / self.room.config.physics.step_hz;
             self.hand
                 .history
                 .push(time, now, self.room.config.release.window_s);
         }
         self.place_hand();
+    }
+
+    /// A velocity of tracking space in the world, walking included.
+    pub(crate) fn in_world(&self, velocity: Velocity) -> Velocity {
+        let rig = self.world_from_tracking;
+        Velocity {
+            linear: rig.transform_vector(velocity.linear) + self.rig_velocity,
+            angular: rig.transform_vector(velocity.angular),
+        }
     }
 
     /// Whether two poses of neighbouring frames lie too far apart for a hand.

@@ -58,6 +58,26 @@ impl Tracked {
     }
 }
 
+/// The last change of the trigger, where a device knows more of it than that it lies within a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TriggerChange {
+    /// How long before the instant of the frame's poses it happened [s]; a picture is prepared ahead of its time, so this
+    /// may be longer than the frame.
+    pub age_s: f64,
+    /// Where the hand was then.
+    pub hand: Tracked,
+}
+
+impl TriggerChange {
+    /// Longest age that is believed [s]: runtimes keep a shorter history.
+    pub const LONGEST_AGE_S: f64 = 0.25;
+
+    /// True when the numbers can be used.
+    pub fn is_usable(&self) -> bool {
+        self.hand.is_usable() && (0.0..=Self::LONGEST_AGE_S).contains(&self.age_s)
+    }
+}
+
 /// Everything that the game consumes in one displayed frame.
 ///
 /// Poses are those of the instant that the frame's last physics step reaches.
@@ -79,6 +99,8 @@ pub struct Input {
     pub press_blue: bool,
     /// Physics steps that this frame advances.
     pub steps: u32,
+    /// When the trigger last changed, if it did since the frame before and the device measured when.
+    pub trigger_change: Option<TriggerChange>,
 }
 
 impl Input {
@@ -92,6 +114,13 @@ impl Input {
                 *tracked = None;
                 refused += 1;
             }
+        }
+        if self
+            .trigger_change
+            .is_some_and(|change| !change.is_usable())
+        {
+            self.trigger_change = None;
+            refused += 1;
         }
         if !(0.0..=1.0).contains(&self.trigger) {
             self.trigger = 0.0;
@@ -140,9 +169,13 @@ mod tests {
             head: Some(nan),
             hand: Some(zero),
             trigger: f64::NAN,
+            trigger_change: Some(TriggerChange {
+                age_s: -0.01,
+                hand: somewhere(),
+            }),
             ..Input::default()
         };
-        assert_eq!(input.refuse_unusable(), 3);
+        assert_eq!(input.refuse_unusable(), 4);
         assert_eq!(input, Input::default());
         let mut good = Input {
             head: Some(somewhere()),

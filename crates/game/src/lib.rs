@@ -43,7 +43,7 @@ pub use config::{
 pub use event::{
     EndReason, Event, EventKind, Release, ReleaseSource, ReleaseVelocity, TrackedPart,
 };
-pub use input::{Input, Tracked, Velocity};
+pub use input::{Input, Tracked, TriggerChange, Velocity};
 pub use observe::{BallSeen, ButtonSeen, Observation, Phase, PinSeen};
 pub use score::{Delivery, PINS, Roll, ScoreError, ScoreSheet};
 pub use visible::{Model, Visible};
@@ -189,8 +189,12 @@ impl Game {
         self.track_head(input);
         self.walk(input);
         self.track_hand(input);
+        let let_go = self.let_go_within(input);
         for step in 1..=input.steps {
             let share = f64::from(step) / f64::from(input.steps);
+            if let Some(moment) = let_go.filter(|moment| moment.before_step == step) {
+                self.release(moment);
+            }
             self.reach(share);
             self.push_buttons(share);
             self.clear_pit();
@@ -205,7 +209,7 @@ impl Game {
         }
         self.report_impacts();
         self.feel();
-        self.grip(input);
+        self.grip(input, let_go);
         self.press_keys(input);
         self.press();
     }

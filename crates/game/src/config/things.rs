@@ -103,6 +103,8 @@ pub struct HandConfig {
     pub trigger_open: f64,
     /// Faster than this between two frames, the tracker has jumped and pushes nothing [m/s].
     pub jump_speed_mps: f64,
+    /// How long a hand that is no longer tracked holds what it held [s].
+    pub lost_grip_s: f64,
 }
 
 /// Walking with the thumb buttons.

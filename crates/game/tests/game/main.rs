@@ -2,6 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 /// Whole throws.
+mod let_go;
 mod play;
 /// The same inputs give the same bits.
 mod reproduce;

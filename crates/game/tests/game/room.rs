@@ -270,7 +270,7 @@ fn a_lost_hand_is_hidden_and_keeps_its_grip() {
     let held = player.game.observe().balls[0].position;
     let hand = player.hand.take();
     player.input.trigger = 0.0;
-    player.wait(0.5);
+    player.wait(0.28);
     assert_eq!(player.game.held(), Some(Model::Ball(0)));
     assert!(player.game.observe().balls[0].position.distance(held) < 1e-9);
     assert!(
@@ -307,6 +307,21 @@ fn a_lost_hand_is_hidden_and_keeps_its_grip() {
         _ => None,
     });
     assert!(speed.unwrap() < 1e-9, "{speed:?}");
+}
+
+#[test]
+fn a_hand_that_stays_lost_drops_what_it_held() {
+    let mut player = Player::new(conditions(&[]), 1);
+    player.take_ball();
+    let held = player.game.observe().balls[0].position;
+    player.hand = None;
+    player.wait(0.32);
+    assert_eq!(player.game.held(), None);
+    let dropped = |kind: &EventKind| matches!(kind, EventKind::Dropped { .. });
+    assert_eq!(player.count(dropped), 1);
+    player.wait(0.2);
+    let fallen = held.y - player.game.observe().balls[0].position.y;
+    assert!(fallen > 0.1, "it fell by {fallen} m");
 }
 
 #[test]

@@ -139,6 +139,7 @@ pub(super) fn hand(config: &Config) -> Result<(), Invalid> {
             ("trigger_close", hand.trigger_close, 0.05, 1.0),
             ("trigger_open", hand.trigger_open, 0.0, 1.0),
             ("jump_speed_mps", hand.jump_speed_mps, 5.0, 1000.0),
+            ("lost_grip_s", hand.lost_grip_s, 0.0, 60.0),
         ],
     )?;
     let reach = ("reach_m", hand.reach_m, hand.radius_m, 1.0);

@@ -1,0 +1,73 @@
+//! A device that says when the trigger opened: the ball leaves the hand then, and not at the end of the frame.
+
+use game::{Tracked, TriggerChange, Velocity};
+use glam::{DQuat, DVec3};
+use physics::Pose;
+
+use crate::support::{Player, RATE, conditions};
+
+/// Within the frame, at its beginning, and some frames before it: a runtime predicts poses that far ahead.
+const AGES: [f64; 4] = [0.0, 0.004, 1.0 / 90.0, 0.035];
+
+/// The ball is where free flight from the hand at that instant leads, with the velocity that this hand gave it.
+#[test]
+fn the_ball_flies_from_the_instant_at_which_the_trigger_opened() {
+    for age_s in AGES {
+        let mut player = Player::new(conditions(&[]), 1);
+        player.take_ball();
+        // Clear of rack and floor.
+        let hand = player.hand.expect("it is tracked").position;
+        player.move_hand(hand + DVec3::new(-0.5, 0.5, 0.0), 1.0);
+        let now = player.hand.expect("it is tracked");
+        let ball_in_hand = now
+            .inverse()
+            .transform_point(player.game.observe().balls[0].position);
+        let tracking_from_world = player.game.world_from_tracking().inverse();
+        // What the runtime knows of that instant differs from what it had predicted for now.
+        let then = Pose {
+            position: now.position + DVec3::new(0.01, -0.02, 0.03),
+            rotation: DQuat::from_rotation_x(0.1) * now.rotation,
+        };
+        let velocity = Velocity {
+            linear: DVec3::new(0.3, 1.5, -4.0),
+            angular: DVec3::new(-3.0, 0.5, 0.2),
+        };
+        player.input.trigger = 0.0;
+        player.input.trigger_change = Some(TriggerChange {
+            age_s,
+            hand: Tracked {
+                pose: tracking_from_world * then,
+                velocity: Some(velocity),
+            },
+        });
+        player.frame();
+        player.input.trigger_change = None;
+        let arm = then.rotation * ball_in_hand;
+        let start = velocity.linear + velocity.angular.cross(arm);
+        let fall = DVec3::NEG_Y * 9.80665;
+        for frame in 0..5 {
+            let flown = age_s + f64::from(frame) / RATE;
+            let expected = then.position + arm + (start + 0.5 * fall * flown) * flown;
+            let ball = &player.game.observe().balls[0];
+            let off = ball.position.distance(expected);
+            assert!(off < 2e-6, "age {age_s} s, {flown} s flown: {off} m off");
+            player.frame();
+        }
+    }
+}
+
+/// An age that no runtime reports is not believed: the ball then leaves at the end of the frame.
+#[test]
+fn an_impossible_age_counts_as_none() {
+    let mut player = Player::new(conditions(&[]), 1);
+    player.take_ball();
+    let before = player.game.observe().balls[0].position;
+    player.input.trigger = 0.0;
+    player.input.trigger_change = Some(TriggerChange {
+        age_s: 3.0,
+        hand: Tracked::at(Pose::from_position(DVec3::new(9.0, 9.0, 9.0))),
+    });
+    player.frame();
+    assert_eq!(player.game.held(), None);
+    assert!(player.game.observe().balls[0].position.distance(before) < 0.02);
+}
