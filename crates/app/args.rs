@@ -180,6 +180,10 @@ pub struct PlayArguments {
     #[arg(long, value_enum)]
     pub device: Option<DeviceChoice>,
 
+    /// Refresh rate of the headset, in hertz [default: the highest that it offers].
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true, value_parser = refresh_rate)]
+    pub refresh_rate: Option<f32>,
+
     /// Open no window; the scripted participant plays and pictures go to files.
     #[arg(long)]
     pub offscreen: bool,
@@ -255,6 +259,13 @@ pub struct QueryArguments {
     /// and writing, to standard error.
     #[arg(long)]
     pub time: bool,
+}
+
+fn refresh_rate(text: &str) -> Result<f32, String> {
+    match text.parse() {
+        Ok(value) if (20.0..=500.0).contains(&value) => Ok(value),
+        _ => Err("a refresh rate is a number of hertz from 20 to 500".to_owned()),
+    }
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {

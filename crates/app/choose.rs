@@ -7,6 +7,8 @@ use crate::args::DeviceChoice;
 /// What the program will run with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Choice {
+    /// A person in a headset.
+    Headset,
     /// A person at a desk, in a window.
     DeskWindow,
     /// The scripted participant, watched in a window.
@@ -18,8 +20,8 @@ pub enum Choice {
 /// What the machine offers, found out by the caller so that the choice can be tested.
 #[derive(Debug, Clone)]
 pub struct Machine {
-    /// `Err` holds the sentence that says why no headset can be used.
-    pub headset: Result<(), String>,
+    /// The headset's name; `Err` holds the sentence that says why none can be used.
+    pub headset: Result<String, String>,
     /// `Err` holds the sentence that says why no window can be opened.
     pub window: Result<(), String>,
 }
@@ -28,10 +30,7 @@ impl Machine {
     /// Looks for a headset runtime and for a display server.
     pub fn look() -> Self {
         let headset = match renderer::headset::probe() {
-            Ok(found) => Err(format!(
-                "{} on {} is there, but this version cannot drive a headset yet",
-                found.system, found.runtime
-            )),
+            Ok(found) => Ok(format!("{} on {}", found.system, found.runtime)),
             Err(error) => Err(error.to_string()),
         };
         Machine {
@@ -68,9 +67,7 @@ pub fn choose(
             "Scripted participant without a screen, as asked for.".to_owned(),
         )),
         (Some(Headset), false) => match &machine.headset {
-            Ok(()) => {
-                bail!("a headset is there, but this version cannot drive it: use --device desk")
-            }
+            Ok(name) => Ok((Choice::Headset, format!("Headset {name}, as asked for."))),
             Err(why) => bail!(
                 "No headset: {}. Use --device desk or --device script, or leave --device out",
                 without_full_stop(why)
@@ -101,8 +98,11 @@ pub fn choose(
 
 fn first_there(machine: &Machine) -> (Choice, String) {
     let no_headset = match &machine.headset {
-        Ok(()) => "this version cannot drive the headset".to_owned(),
-        Err(why) => without_full_stop(why).to_owned(),
+        Ok(name) => {
+            let why = format!("Headset {name}, because it is there; --device desk does without.");
+            return (Choice::Headset, why);
+        }
+        Err(why) => without_full_stop(why),
     };
     match &machine.window {
         Ok(()) => (
@@ -161,6 +161,19 @@ mod tests {
             why.contains("no OpenXR loader") && why.contains("DISPLAY is not set"),
             "{why}"
         );
+    }
+
+    #[test]
+    fn choose_takes_the_headset_where_there_is_one() {
+        let machine = Machine {
+            headset: Ok("Index on Monado".to_owned()),
+            ..machine(true)
+        };
+        let (choice, why) = choose(None, false, &machine).expect("a choice");
+        assert_eq!(choice, Choice::Headset);
+        assert!(why.contains("Index on Monado"), "{why}");
+        let (choice, _) = choose(Some(DeviceChoice::Desk), false, &machine).expect("a choice");
+        assert_eq!(choice, Choice::DeskWindow);
     }
 
     #[test]

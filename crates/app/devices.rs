@@ -2,6 +2,7 @@
 
 pub mod desk;
 pub mod gamepad;
+pub mod headset;
 pub mod script;
 
 use game::{Game, Input};

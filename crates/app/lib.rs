@@ -12,6 +12,7 @@ pub mod convert;
 pub mod devices;
 pub mod effects;
 pub mod hard_cases;
+pub mod headset;
 pub mod journal;
 pub mod motion;
 pub mod output;

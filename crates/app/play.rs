@@ -13,6 +13,7 @@ use crate::args::PlayArguments;
 use crate::choose::{self, Choice, Machine};
 use crate::devices::Device;
 use crate::devices::script::{Script, Velocities};
+use crate::headset;
 use crate::output;
 use crate::pictures::{Painter, Wanted};
 use crate::rehearsal;
@@ -47,10 +48,10 @@ pub fn play(arguments: &PlayArguments, root: &Path) -> Result<()> {
         scene,
         frames: arguments.frames,
         seed: arguments.seed,
-        device: if choice == Choice::DeskWindow {
-            "desk"
-        } else {
-            "script"
+        device: match choice {
+            Choice::Headset => "headset",
+            Choice::DeskWindow => "desk",
+            Choice::ScriptWindow | Choice::ScriptOffscreen => "script",
         },
         folder,
     };
@@ -59,6 +60,7 @@ pub fn play(arguments: &PlayArguments, root: &Path) -> Result<()> {
     };
     match choice {
         Choice::ScriptOffscreen => offscreen(setup, root, wanted),
+        Choice::Headset => headset::run(setup, root, wanted, arguments.refresh_rate),
         Choice::DeskWindow | Choice::ScriptWindow => window::run(setup, root, wanted, choice),
     }
 }

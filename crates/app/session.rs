@@ -28,7 +28,7 @@ pub struct Setup {
     pub frames: u32,
     /// Seed of the scripted participant.
     pub seed: u64,
-    /// Who bowls: `desk` or `script`.
+    /// Who bowls: `headset`, `desk` or `script`.
     pub device: &'static str,
     /// Frames per second of the device [Hz].
     pub rate_hz: f64,
@@ -131,6 +131,14 @@ impl Session {
         writeln!(self.motion, "{}", motion::row(&self.game, &input)).context(MOTION_FAILED)?;
         self.camera.observe(&self.game);
         Ok(())
+    }
+
+    /// Records what the device said of itself; the game never sees it.
+    ///
+    /// # Errors
+    /// As [`Session::frame`].
+    pub fn device(&mut self, value: serde_json::Value) -> Result<()> {
+        self.journal.device(value)
     }
 
     /// Hands everything recorded so far to the system, for who follows the journal while it grows.

@@ -120,13 +120,24 @@ impl Gpu {
                     reason: one_line(&error.to_string()),
                 }
             })?;
-        Ok(Self {
+        Ok(Self::from_parts(instance, adapter, device, queue))
+    }
+
+    /// A device that something else has opened, a headset's runtime for example.
+    pub(crate) fn from_parts(
+        instance: wgpu::Instance,
+        adapter: wgpu::Adapter,
+        device: wgpu::Device,
+        queue: wgpu::Queue,
+    ) -> Self {
+        let info = adapter.get_info();
+        Self {
             instance,
             adapter,
             device,
             queue,
             info,
-        })
+        }
     }
 
     /// The device's own name, for example `llvmpipe (LLVM 15.0.6, 256 bits)`.

@@ -1,8 +1,30 @@
-//! Headsets. Today: whether one is there, and if not, what is missing.
+//! A headset through OpenXR: whether one is there, and a session that shows a [`crate::Scene`] in it.
+//!
+//! A [`HeadsetSession`] owns everything that the runtime gave: the instance, Vulkan through the runtime with wgpu on top, a
+//! swapchain for each eye, the actions. Once a frame the caller asks it, in this order, to [`HeadsetSession::poll`] (what has
+//! the runtime to say), [`HeadsetSession::wait`] (until the next frame may begin), [`HeadsetSession::read`] (head, hands and
+//! buttons at the time of display) and [`HeadsetSession::show`] (locate the eyes as late as possible and draw).
+//! Poses are in tracking space: metres, y up, -z forward, the floor at y = 0. Each optional extension is used only where the
+//! runtime offers it.
 
-mod openxr;
+mod actions;
+mod error;
+mod eyes;
+mod frame;
+mod note;
+mod profiles;
+mod runtime;
+mod session;
+mod space;
+mod vulkan;
 
-pub use self::openxr::probe;
+pub use self::actions::{Change, HandReading, Readings, Side};
+pub use self::error::HeadsetError;
+pub use self::frame::Frame;
+pub use self::note::{Focus, Note};
+pub use self::runtime::probe;
+pub use self::session::{HeadsetSession, HeadsetSettings};
+pub use self::space::TrackedPose;
 
 /// A headset that an OpenXR runtime offers.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -13,36 +35,4 @@ pub struct Headset {
     pub system: String,
     /// Pixels that the runtime recommends per eye, width and height.
     pub eye_size: [u32; 2],
-}
-
-/// Why no headset can be used, each in one sentence that says what to do.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum HeadsetError {
-    /// The OpenXR loader library is not installed.
-    #[error("no OpenXR loader is installed: on Debian or Ubuntu, install libopenxr-loader1")]
-    NoLoader,
-    /// The loader found no active runtime.
-    #[error(
-        "no OpenXR runtime is active: start SteamVR, Monado or WiVRn once and make it the active runtime, or set XR_RUNTIME_JSON"
-    )]
-    NoRuntime,
-    /// The runtime is installed, but what it talks to does not run.
-    #[error(
-        "the OpenXR runtime is installed but does not answer: start its service (SteamVR, or monado-service)"
-    )]
-    NoService,
-    /// The runtime runs and sees no headset.
-    #[error("the OpenXR runtime {0} runs but sees no headset: connect one and switch it on")]
-    NotConnected(String),
-    /// The runtime cannot show two eyes with Vulkan.
-    #[error("the OpenXR runtime {runtime} cannot be used: it lacks {what}")]
-    Lacks {
-        /// The runtime's name and version.
-        runtime: String,
-        /// What it does not offer.
-        what: &'static str,
-    },
-    /// Anything else, as the runtime names it.
-    #[error("the OpenXR runtime reported {0} while it was asked for a headset")]
-    Other(String),
 }

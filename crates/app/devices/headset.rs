@@ -1,0 +1,214 @@
+//! From what a headset reads to what the game consumes: which hand throws, how many steps are due.
+
+use game::{Input, Tracked, TriggerChange, Velocity};
+use physics::Pose;
+use renderer::headset::{HandReading, Readings, Side, TrackedPose};
+
+/// A hand that closes further than this takes over from one that is open.
+const TAKES_OVER: f64 = 0.5;
+/// Longest time that one frame makes up for [s]: after a longer stall the alley goes on from where it was.
+const LONGEST_CATCH_UP_S: f64 = 0.25;
+
+/// The participant in a headset.
+#[derive(Debug)]
+pub struct Participant {
+    step_hz: f64,
+    throwing: Side,
+    /// Time of display of the last frame that was played [ns].
+    played_ns: Option<i64>,
+    /// Steps that the frames so far asked for and did not get because steps are whole, from -0.5 to 0.5.
+    owed: f64,
+}
+
+impl Participant {
+    /// Somebody whose right hand throws until the left one closes.
+    pub fn new(step_hz: f64) -> Self {
+        Self {
+            step_hz,
+            throwing: Side::Right,
+            played_ns: None,
+            owed: 0.0,
+        }
+    }
+
+    /// The hand that throws.
+    pub fn throwing(&self) -> Side {
+        self.throwing
+    }
+
+    /// What a frame without the participant's attention is: the head moves, time stands still, the hand is gone.
+    pub fn pause(&mut self, readings: &Readings) -> Input {
+        self.played_ns = None;
+        Input {
+            head: readings.head.map(tracked),
+            ..Input::default()
+        }
+    }
+
+    /// The input of a frame that is seen at `display_ns`, `period_s` after the one before; `is_holding` is the game's word.
+    pub fn input(
+        &mut self,
+        readings: &Readings,
+        display_ns: i64,
+        period_s: f64,
+        is_holding: bool,
+    ) -> Input {
+        let hands = &readings.hands;
+        let other = self.throwing.other();
+        let is_free = !is_holding && closure(&hands[self.throwing as usize]) < TAKES_OVER;
+        if is_free && closure(&hands[other as usize]) >= TAKES_OVER {
+            self.throwing = other;
+        }
+        let hand = &hands[self.throwing as usize];
+        let choosing = &hands[self.throwing.other() as usize];
+        Input {
+            head: readings.head.map(tracked),
+            hand: hand.grip.map(tracked),
+            trigger: closure(hand),
+            walk_forward: hand.forward,
+            walk_back: hand.back,
+            press_red: choosing.red,
+            press_blue: choosing.blue,
+            steps: self.due(display_ns, period_s),
+            trigger_change: change(hand, display_ns),
+        }
+    }
+
+    /// Whole steps up to the time of display.
+    fn due(&mut self, display_ns: i64, period_s: f64) -> u32 {
+        let elapsed = self
+            .played_ns
+            .map_or(period_s, |last| (display_ns - last) as f64 * 1e-9);
+        self.played_ns = Some(display_ns);
+        let wanted = elapsed.clamp(0.0, LONGEST_CATCH_UP_S) * self.step_hz + self.owed;
+        let steps = wanted.round().max(0.0);
+        self.owed = (wanted - steps).clamp(-0.5, 0.5);
+        steps as u32
+    }
+}
+
+/// How far a hand is closed, whichever of its two ways the participant took.
+fn closure(hand: &HandReading) -> f64 {
+    hand.trigger.max(hand.squeeze).clamp(0.0, 1.0)
+}
+
+fn change(hand: &HandReading, display_ns: i64) -> Option<TriggerChange> {
+    let change = hand.change?;
+    Some(TriggerChange {
+        age_s: (display_ns - change.time_ns) as f64 * 1e-9,
+        hand: tracked(change.grip?),
+    })
+    .filter(TriggerChange::is_usable)
+}
+
+fn tracked(pose: TrackedPose) -> Tracked {
+    Tracked {
+        pose: Pose {
+            position: pose.position,
+            rotation: pose.rotation,
+        },
+        velocity: pose
+            .velocity
+            .map(|[linear, angular]| Velocity { linear, angular }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DQuat, DVec3};
+    use renderer::headset::Change;
+
+    fn grip(x: f64) -> Option<TrackedPose> {
+        Some(TrackedPose {
+            position: DVec3::new(x, 1.0, 0.0),
+            rotation: DQuat::IDENTITY,
+            velocity: None,
+        })
+    }
+
+    fn readings(left: f64, right: f64) -> Readings {
+        let mut readings = Readings::default();
+        for (hand, (x, trigger)) in readings.hands.iter_mut().zip([(-0.3, left), (0.3, right)]) {
+            hand.grip = grip(x);
+            hand.trigger = trigger;
+        }
+        readings
+    }
+
+    #[test]
+    fn input_follows_the_hand_that_closes_and_stays_with_what_it_holds() {
+        let mut participant = Participant::new(720.0);
+        let mut x = |left, right, holding| {
+            let input = participant.input(&readings(left, right), 0, 0.01, holding);
+            input.hand.expect("both hands are tracked").pose.position.x
+        };
+        assert_eq!(x(0.0, 0.0, false), 0.3);
+        assert_eq!(x(0.9, 0.0, false), -0.3);
+        assert_eq!(x(0.9, 0.9, true), -0.3, "the ball is in the left hand");
+        assert_eq!(x(0.0, 0.9, true), -0.3, "until it is let go");
+        assert_eq!(x(0.0, 0.9, false), 0.3);
+    }
+
+    #[test]
+    fn buttons_of_the_other_hand_choose_and_those_of_the_throwing_hand_walk() {
+        let mut participant = Participant::new(720.0);
+        let mut both = readings(0.0, 0.0);
+        for hand in &mut both.hands {
+            (hand.forward, hand.red) = (true, true);
+        }
+        both.hands[0].forward = false;
+        let input = participant.input(&both, 0, 0.01, false);
+        assert!(input.walk_forward && input.press_red && !input.press_blue);
+        both.hands[0].red = false;
+        assert!(!participant.input(&both, 0, 0.01, false).press_red);
+    }
+
+    /// 75 Hz does not divide 720: the steps of any stretch of frames are those of its time, to one.
+    #[test]
+    fn steps_follow_the_clock_at_any_rate() {
+        for hz in [45.0, 72.0, 75.0, 90.0, 120.0] {
+            let mut participant = Participant::new(720.0);
+            let (mut steps, mut longest) = (0, 0);
+            for frame in 0..1000 {
+                let display_ns = (f64::from(frame) / hz * 1e9) as i64;
+                let input = participant.input(&readings(0.0, 0.0), display_ns, 1.0 / hz, false);
+                longest = longest.max(input.steps);
+                steps += input.steps;
+            }
+            let exact = 1000.0 / hz * 720.0;
+            assert!(
+                (f64::from(steps) - exact).abs() <= 1.0,
+                "{hz} Hz: {steps}, not {exact}"
+            );
+            assert!(f64::from(longest) < 720.0 / hz + 1.0);
+        }
+    }
+
+    #[test]
+    fn a_pause_stops_time_and_hides_the_hand() {
+        let mut participant = Participant::new(720.0);
+        participant.input(&readings(0.0, 0.0), 0, 0.01, false);
+        let paused = participant.pause(&readings(0.0, 0.0));
+        assert_eq!((paused.steps, paused.hand), (0, None));
+        let ten_seconds = 10_000_000_000;
+        let input = participant.input(&readings(0.0, 0.0), ten_seconds, 1.0 / 90.0, false);
+        assert_eq!(input.steps, 8, "what passed meanwhile is not made up for");
+    }
+
+    #[test]
+    fn a_change_is_aged_from_the_time_of_display() {
+        let mut participant = Participant::new(720.0);
+        let mut with_change = readings(0.0, 0.0);
+        with_change.hands[1].change = Some(Change {
+            time_ns: 1_000_000_000,
+            grip: grip(0.1),
+        });
+        let mut age = |display_ns| {
+            let input = participant.input(&with_change, display_ns, 0.01, true);
+            input.trigger_change.map(|change| change.age_s)
+        };
+        assert!((age(1_030_000_000).expect("a recent change") - 0.03).abs() < 1e-12);
+        assert_eq!(age(2_000_000_000), None, "too old to be believed");
+    }
+}

@@ -1,0 +1,374 @@
+//! `bowling play` in a headset: a session with the OpenXR runtime plays the game, and a watchdog stays beside it.
+//!
+//! The runtime's calls may block for as long as the runtime likes, so they have a thread of their own. Game and journal are
+//! shared with the main thread, which can close them in order even if a call never returns. A runtime that ends the session or
+//! dies is connected to anew; the game waits meanwhile.
+
+mod frames;
+mod pulses;
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result};
+use game::Config;
+use renderer::headset::{Focus, HeadsetError, HeadsetSession, HeadsetSettings, Note};
+use renderer::{Renderer, RendererSettings};
+use serde_json::json;
+
+use crate::convert::{self, Stock};
+use crate::devices::headset::Participant;
+use crate::pictures::{Painter, Wanted};
+use crate::play::{self, Progress};
+use crate::session::{Session, Setup};
+use frames::FrameTimes;
+
+/// A frame that takes longer than this is a runtime that does not answer.
+const PATIENCE: Duration = Duration::from_secs(2);
+/// Time between two attempts to connect anew.
+const RETRY: Duration = Duration::from_millis(500);
+/// How often the runtime is asked whether it wants frames, while it wants none.
+const IDLE: Duration = Duration::from_millis(10);
+
+/// What the two threads share.
+struct Shared {
+    /// `None` once the session is finished.
+    session: Mutex<Option<Session>>,
+    /// Milliseconds since `began` at which the runtime's thread last came round.
+    beat_ms: AtomicU64,
+    began: Instant,
+    stop: Arc<AtomicBool>,
+}
+
+impl Shared {
+    fn beat(&self) {
+        let now = self.began.elapsed().as_millis() as u64;
+        self.beat_ms.store(now, Ordering::Relaxed);
+    }
+
+    /// How long the runtime's thread has been silent.
+    fn silence(&self) -> Duration {
+        let beat = Duration::from_millis(self.beat_ms.load(Ordering::Relaxed));
+        self.began.elapsed().saturating_sub(beat)
+    }
+
+    fn must_stop(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
+    /// Does something with the session, unless it is finished.
+    fn with<T>(&self, act: impl FnOnce(&mut Session) -> Result<T>) -> Result<Option<T>> {
+        // A thread that panicked left the journal between two lines: it can still be closed.
+        let mut session = self.session.lock().unwrap_or_else(PoisonError::into_inner);
+        session.as_mut().map(act).transpose()
+    }
+
+    fn note(&self, value: serde_json::Value) -> Result<()> {
+        self.with(|session| session.device(value)).map(|_| ())
+    }
+}
+
+/// Connects, plays until the runtime or Ctrl-C ends it, and leaves the recording in order.
+///
+/// `refresh_rate_hz` is what the headset is asked for [Hz]; `None` for its highest.
+///
+/// # Errors
+/// One sentence when no headset can be used, an asset is missing, or the recording cannot be written.
+pub fn run(setup: Setup, root: &Path, wanted: Wanted, refresh_rate_hz: Option<f32>) -> Result<()> {
+    let config = setup.conditions.lobby.clone();
+    let settings = HeadsetSettings { refresh_rate_hz };
+    let stop = play::interruption()?;
+    let stage = Stage::open(settings, root, &config)?;
+    println!(
+        "{} on {}.",
+        stage.headset.headset().system,
+        stage.headset.headset().runtime
+    );
+    // Last: nothing is written before everything else works.
+    let session = Session::start(setup)?;
+    println!(
+        "Recording into {}. Ctrl-C ends and saves.",
+        session.folder().display()
+    );
+    let shared = Arc::new(Shared {
+        session: Mutex::new(Some(session)),
+        beat_ms: AtomicU64::new(0),
+        began: Instant::now(),
+        stop: Arc::clone(&stop),
+    });
+    let player = Player {
+        shared: Arc::clone(&shared),
+        root: root.to_owned(),
+        participant: Participant::new(config.physics.step_hz),
+        times: FrameTimes::default(),
+        config: config.clone(),
+        settings,
+    };
+    let (sender, ended) = mpsc::channel();
+    std::thread::Builder::new()
+        .name("headset".to_owned())
+        .spawn(move || {
+            // The receiver is gone only where the main thread has given this one up.
+            let _ = sender.send(player.play(stage));
+        })
+        .context("cannot start the headset's thread")?;
+    let outcome = watch(&shared, &ended);
+    let session = shared
+        .session
+        .lock()
+        .unwrap_or_else(PoisonError::into_inner)
+        .take();
+    let Some(session) = session else {
+        return outcome;
+    };
+    if outcome.is_err() {
+        session.finish(None, wanted, &mut |_| ())?;
+        return outcome;
+    }
+    finish(session, root, &config, wanted, stop)
+}
+
+/// Waits for the end of play, and says so when the runtime stops answering.
+fn watch(shared: &Shared, ended: &mpsc::Receiver<Result<()>>) -> Result<()> {
+    let mut is_silent = false;
+    let mut asked_to_stop: Option<Instant> = None;
+    loop {
+        match ended.recv_timeout(Duration::from_millis(100)) {
+            Ok(outcome) => return outcome,
+            Err(RecvTimeoutError::Disconnected) => anyhow::bail!(
+                "the headset's thread ended by a fault of the program; the recording is in order up to here"
+            ),
+            Err(RecvTimeoutError::Timeout) => {}
+        }
+        let silent = shared.silence() > PATIENCE;
+        if silent != is_silent {
+            is_silent = silent;
+            println!(
+                "{}",
+                if silent {
+                    "The OpenXR runtime does not answer: the game waits. Ctrl-C ends and saves."
+                } else {
+                    "The OpenXR runtime answers again."
+                }
+            );
+            shared.note(json!({ "runtime_answers": !silent }))?;
+            shared.with(Session::flush)?;
+        }
+        if shared.must_stop() {
+            // A thread that hangs in the runtime is left behind; the session is not.
+            let since = *asked_to_stop.get_or_insert_with(Instant::now);
+            if since.elapsed() > PATIENCE && silent {
+                return Ok(());
+            }
+        }
+    }
+}
+
+fn finish(
+    session: Session,
+    root: &Path,
+    config: &Config,
+    wanted: Wanted,
+    stop: Arc<AtomicBool>,
+) -> Result<()> {
+    let was_stopped = stop.swap(false, Ordering::Relaxed);
+    let mut painter = (session.has_throws() && !was_stopped)
+        .then(|| Painter::new(root, config))
+        .transpose()?
+        .map(|painter| painter.stopped_by(stop));
+    let mut progress = Progress::new();
+    let summary = session.finish(painter.as_mut(), wanted, &mut |text| progress.say(text))?;
+    progress.end();
+    play::report(&summary);
+    Ok(())
+}
+
+/// Everything that lasts as long as one connection to the runtime.
+struct Stage {
+    renderer: Renderer,
+    stock: Stock,
+    headset: HeadsetSession,
+}
+
+impl Stage {
+    fn open(settings: HeadsetSettings, root: &Path, config: &Config) -> Result<Self> {
+        let headset = HeadsetSession::open(settings)?;
+        let mut renderer = Renderer::new(headset.gpu(), RendererSettings::default())
+            .context("cannot draw for the headset")?;
+        let stock = Stock::load(&mut renderer, root, config)?;
+        Ok(Self {
+            renderer,
+            stock,
+            headset,
+        })
+    }
+}
+
+/// The runtime's thread.
+struct Player {
+    shared: Arc<Shared>,
+    root: PathBuf,
+    config: Config,
+    settings: HeadsetSettings,
+    participant: Participant,
+    times: FrameTimes,
+}
+
+impl Player {
+    /// Plays until the end, through as many connections as it takes.
+    fn play(mut self, stage: Stage) -> Result<()> {
+        let mut stage = Some(stage);
+        while !self.shared.must_stop() {
+            let Some(mut connected) = stage.take() else {
+                stage = self.reconnect()?;
+                continue;
+            };
+            let ended = self.play_on(&mut connected);
+            match ended {
+                Ok(()) => return self.shared.note(self.times.summary()),
+                Err(error) if is_loss(&error) => {
+                    println!("{error:#}. The game waits for the headset; Ctrl-C ends and saves.");
+                    self.shared.note(json!({ "lost": format!("{error:#}") }))?;
+                    self.shared.with(Session::flush)?;
+                }
+                Err(error) => return Err(error),
+            }
+        }
+        self.shared.note(self.times.summary())
+    }
+
+    /// One attempt after a pause; only what cannot pass is an error.
+    fn reconnect(&mut self) -> Result<Option<Stage>> {
+        std::thread::sleep(RETRY);
+        self.shared.beat();
+        let Ok(stage) = Stage::open(self.settings, &self.root, &self.config) else {
+            return Ok(None);
+        };
+        println!("Connected to the headset again: the game goes on.");
+        self.shared
+            .note(json!({ "reconnected": stage.headset.headset().runtime }))?;
+        Ok(Some(stage))
+    }
+
+    /// Plays on one connection until the runtime or somebody ends it.
+    fn play_on(&mut self, stage: &mut Stage) -> Result<()> {
+        let mut has_asked = false;
+        loop {
+            self.shared.beat();
+            for note in stage.headset.poll()? {
+                self.shared.note(note_line(&note))?;
+                if let Some(text) = note_text(&note) {
+                    println!("{text}");
+                }
+                if note == Note::Exit {
+                    return Ok(());
+                }
+            }
+            if self.shared.must_stop() && !has_asked {
+                has_asked = true;
+                if stage.headset.request_exit().is_err() {
+                    // Not running, so there is nothing to end.
+                    return Ok(());
+                }
+            }
+            if stage.headset.is_running() {
+                self.frame(stage)?;
+            } else {
+                std::thread::sleep(IDLE);
+            }
+        }
+    }
+
+    fn frame(&mut self, stage: &mut Stage) -> Result<()> {
+        let headset = &mut stage.headset;
+        let frame = headset.wait()?;
+        let readings = headset.read(&frame)?;
+        let is_here = headset.focus() == Focus::Focused;
+        let participant = &mut self.participant;
+        let played = self.shared.with(|session| {
+            let input = if is_here {
+                let is_holding = session.game().held().is_some();
+                let (at, period) = (frame.display_time_ns(), frame.period_s());
+                participant.input(&readings, at, period, is_holding)
+            } else {
+                participant.pause(&readings)
+            };
+            let held = session.game().held();
+            session.frame(input)?;
+            let game = session.game();
+            let scene = convert::scene(game.visible().iter(), &stage.stock, game.held().is_some());
+            Ok((
+                scene,
+                game.world_from_tracking(),
+                pulses::of(game.events(), held),
+            ))
+        })?;
+        let Some((scene, rig, pulse)) = played else {
+            // The main thread has finished the session without this one.
+            headset.skip(frame)?;
+            return Ok(());
+        };
+        let simulated = frame.woken().elapsed();
+        let timing = self.times.of(&frame, simulated);
+        if frame.should_render() {
+            let rig = (rig.position.as_vec3(), rig.rotation.as_quat());
+            headset.show(frame, &mut stage.renderer, &scene, rig, false)?;
+        } else {
+            headset.skip(frame)?;
+        }
+        if let Some(pulse) = pulse.filter(|_| is_here) {
+            let side = self.participant.throwing();
+            headset.pulse(side, pulse.amplitude, pulse.seconds)?;
+        }
+        let line = self.times.finish(timing);
+        // Handed to the system every frame: whoever follows the journal sees what the game saw.
+        self.shared
+            .with(|session| session.device(line).and_then(|()| session.flush()))
+            .map(|_| ())
+    }
+}
+
+fn is_loss(error: &anyhow::Error) -> bool {
+    error
+        .downcast_ref::<HeadsetError>()
+        .is_some_and(HeadsetError::is_loss)
+}
+
+/// A note as the journal keeps it.
+fn note_line(note: &Note) -> serde_json::Value {
+    match note {
+        Note::Focus(focus) => json!({ "focus": format!("{focus:?}").to_lowercase() }),
+        Note::Exit => json!({ "exit": true }),
+        Note::Profile { side, profile } => {
+            json!({ "hand": format!("{side:?}").to_lowercase(), "profile": profile })
+        }
+        Note::BindingsRejected { profile, answer } => {
+            json!({ "bindings_rejected": profile, "answer": answer })
+        }
+        Note::Recentred => json!({ "recentred": true }),
+        Note::Worn(is_worn) => json!({ "worn": is_worn }),
+        Note::RefreshRate(rate) => json!({ "refresh_rate_hz": rate }),
+    }
+}
+
+/// What the experimenter reads of a note; nothing of what is in order.
+fn note_text(note: &Note) -> Option<String> {
+    match note {
+        Note::Profile {
+            side,
+            profile: Some(profile),
+        } => Some(format!("{side:?} hand: {profile}.")),
+        Note::Profile { side, .. } => Some(format!("{side:?} hand: no controller.")),
+        Note::BindingsRejected { profile, answer } => Some(format!(
+            "The runtime refused the bindings of {profile} ({answer}); other controllers work."
+        )),
+        Note::Focus(Focus::Visible) => {
+            Some("The participant is in a menu of the system: the game waits.".to_owned())
+        }
+        Note::Worn(false) => Some("The headset was taken off.".to_owned()),
+        _ => None,
+    }
+}

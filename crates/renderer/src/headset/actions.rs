@@ -1,0 +1,271 @@
+//! What hands and buttons do: actions, bound to controllers by the table in `profiles.rs`.
+
+use openxr as xr;
+
+use super::HeadsetError;
+use super::note::Note;
+use super::profiles::{Asked, PROFILES, Profile};
+use super::runtime::Runtime;
+use super::space::{self, TrackedPose};
+
+/// Left or right hand; also its index in arrays of two.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// The left hand.
+    Left,
+    /// The right hand.
+    Right,
+}
+
+impl Side {
+    /// Both, in the order of arrays of two.
+    pub const BOTH: [Self; 2] = [Self::Left, Self::Right];
+
+    /// The hand on the other side.
+    pub fn other(self) -> Self {
+        match self {
+            Self::Left => Self::Right,
+            Self::Right => Self::Left,
+        }
+    }
+
+    fn path(self) -> &'static str {
+        match self {
+            Self::Left => "/user/hand/left",
+            Self::Right => "/user/hand/right",
+        }
+    }
+}
+
+/// The last change of a hand's trigger or squeeze.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Change {
+    /// When it happened, on the runtime's clock [ns].
+    pub time_ns: i64,
+    /// Where the grip was then.
+    pub grip: Option<TrackedPose>,
+}
+
+/// What one hand does.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct HandReading {
+    /// The grip at the time of display; `None` while it is not tracked.
+    pub grip: Option<TrackedPose>,
+    /// Trigger, from 0 (open) to 1 (closed).
+    pub trigger: f64,
+    /// Squeeze, from 0 (open) to 1 (closed).
+    pub squeeze: f64,
+    /// The last change of either, if there was one since the reading before.
+    pub change: Option<Change>,
+    /// Lower thumb button, or the upper half of a trackpad.
+    pub forward: bool,
+    /// Upper thumb button, or the lower half of a trackpad.
+    pub back: bool,
+    /// Upper thumb button, in the set that can be locked.
+    pub red: bool,
+    /// Lower thumb button, in the set that can be locked.
+    pub blue: bool,
+    /// Menu button.
+    pub menu: bool,
+}
+
+/// Between its halves a trackpad that is pressed means neither; its height goes from -1 to 1.
+const PAD_EDGE: f32 = 0.2;
+
+/// Head and hands at one time of display.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Readings {
+    /// The head; `None` while it is not tracked.
+    pub head: Option<TrackedPose>,
+    /// Left and right hand.
+    pub hands: [HandReading; 2],
+}
+
+/// The session's actions.
+pub(super) struct Actions {
+    play: xr::ActionSet,
+    choose: xr::ActionSet,
+    hands: [xr::Path; 2],
+    grips: [xr::Space; 2],
+    trigger: xr::Action<f32>,
+    squeeze: xr::Action<f32>,
+    pad: xr::Action<xr::Vector2f>,
+    forward: xr::Action<bool>,
+    back: xr::Action<bool>,
+    pad_click: xr::Action<bool>,
+    menu: xr::Action<bool>,
+    red: xr::Action<bool>,
+    blue: xr::Action<bool>,
+    haptic: xr::Action<xr::Haptic>,
+}
+
+impl Actions {
+    /// Makes the actions, suggests every profile's bindings and attaches them; `notes` names what the runtime rejects.
+    pub fn attach(
+        runtime: &Runtime,
+        session: &xr::Session<xr::Vulkan>,
+        notes: &mut Vec<Note>,
+    ) -> Result<Self, HeadsetError> {
+        let instance = &runtime.instance;
+        let play = instance.create_action_set("play", "Play", 0)?;
+        let choose = instance.create_action_set("choose", "Choose a game", 0)?;
+        let [left, right] = Side::BOTH.map(|side| instance.string_to_path(side.path()));
+        let hands = [left?, right?];
+        let grip = play.create_action::<xr::Posef>("grip_pose", "Hand", &hands)?;
+        let button = |set: &xr::ActionSet, name, shown| set.create_action(name, shown, &hands);
+        let actions = Self {
+            trigger: play.create_action("trigger", "Hold the ball", &hands)?,
+            squeeze: play.create_action("squeeze", "Hold the ball (squeeze)", &hands)?,
+            pad: play.create_action("pad", "Walk (trackpad)", &hands)?,
+            forward: button(&play, "forward", "Walk forward")?,
+            back: button(&play, "back", "Walk back")?,
+            pad_click: button(&play, "pad_click", "Walk (press the trackpad)")?,
+            menu: button(&play, "menu", "Menu")?,
+            red: button(&choose, "red", "Red game")?,
+            blue: button(&choose, "blue", "Blue game")?,
+            haptic: play.create_action("haptic", "Feel the ball", &hands)?,
+            grips: [
+                grip.create_space(session, hands[0], xr::Posef::IDENTITY)?,
+                grip.create_space(session, hands[1], xr::Posef::IDENTITY)?,
+            ],
+            play,
+            choose,
+            hands,
+        };
+        for profile in &PROFILES {
+            if profile
+                .extension
+                .is_some_and(|name| !is_enabled(runtime, name))
+            {
+                continue;
+            }
+            if let Err(answer) = actions.suggest(instance, profile, &grip) {
+                notes.push(Note::BindingsRejected {
+                    profile: profile.name,
+                    answer: format!("{answer:?}"),
+                });
+            }
+        }
+        session.attach_action_sets(&[&actions.play, &actions.choose])?;
+        Ok(actions)
+    }
+
+    fn suggest(
+        &self,
+        instance: &xr::Instance,
+        profile: &Profile,
+        grip: &xr::Action<xr::Posef>,
+    ) -> xr::Result<()> {
+        let mut bindings = Vec::new();
+        for (asked, path) in profile.bindings() {
+            let path = instance.string_to_path(&path)?;
+            bindings.push(match asked {
+                Asked::GripPose => xr::Binding::new(grip, path),
+                Asked::Trigger => xr::Binding::new(&self.trigger, path),
+                Asked::Squeeze => xr::Binding::new(&self.squeeze, path),
+                Asked::Pad => xr::Binding::new(&self.pad, path),
+                Asked::Forward => xr::Binding::new(&self.forward, path),
+                Asked::Back => xr::Binding::new(&self.back, path),
+                Asked::PadClick => xr::Binding::new(&self.pad_click, path),
+                Asked::Menu => xr::Binding::new(&self.menu, path),
+                Asked::Red => xr::Binding::new(&self.red, path),
+                Asked::Blue => xr::Binding::new(&self.blue, path),
+                Asked::Haptic => xr::Binding::new(&self.haptic, path),
+            });
+        }
+        let path = instance.string_to_path(profile.path)?;
+        instance.suggest_interaction_profile_bindings(path, &bindings)
+    }
+
+    /// Brings the actions up to date, once a frame. With `locked` the Red and Blue buttons rest.
+    pub fn sync(
+        &self,
+        session: &xr::Session<xr::Vulkan>,
+        locked: bool,
+    ) -> Result<(), HeadsetError> {
+        let sets = [
+            xr::ActiveActionSet::new(&self.play),
+            xr::ActiveActionSet::new(&self.choose),
+        ];
+        let active = if locked { &sets[..1] } else { &sets };
+        Ok(session.sync_actions(active)?)
+    }
+
+    /// One hand as of the last [`Actions::sync`], its grip at `time`. With `locked` a trackpad chooses no game either.
+    pub fn read(
+        &self,
+        session: &xr::Session<xr::Vulkan>,
+        side: Side,
+        (base, time): (&xr::Space, xr::Time),
+        locked: bool,
+    ) -> Result<HandReading, HeadsetError> {
+        let hand = self.hands[side as usize];
+        let grip = &self.grips[side as usize];
+        let trigger = self.trigger.state(session, hand)?;
+        let squeeze = self.squeeze.state(session, hand)?;
+        let changed_at = [&trigger, &squeeze]
+            .into_iter()
+            .filter(|state| state.is_active && state.changed_since_last_sync)
+            .map(|state| state.last_change_time)
+            .max_by_key(|time| time.as_nanos());
+        let change = changed_at.map(|at| {
+            let time_ns = at.as_nanos();
+            space::locate(grip, base, at).map(|grip| Change { time_ns, grip })
+        });
+        let is_down = |action: &xr::Action<bool>| -> Result<bool, HeadsetError> {
+            let state = action.state(session, hand)?;
+            Ok(state.is_active && state.current_state)
+        };
+        let pad_y = self.pad.state(session, hand)?.current_state.y;
+        let is_pressed = is_down(&self.pad_click)?;
+        let (upper, lower) = (
+            is_pressed && pad_y > PAD_EDGE,
+            is_pressed && pad_y < -PAD_EDGE,
+        );
+        Ok(HandReading {
+            grip: space::locate(grip, base, time)?,
+            trigger: trigger.current_state.into(),
+            squeeze: squeeze.current_state.into(),
+            change: change.transpose()?,
+            forward: is_down(&self.forward)? || upper,
+            back: is_down(&self.back)? || lower,
+            red: !locked && (is_down(&self.red)? || upper),
+            blue: !locked && (is_down(&self.blue)? || lower),
+            menu: is_down(&self.menu)?,
+        })
+    }
+
+    /// Lets a hand feel a pulse; a controller that cannot is no error.
+    pub fn pulse(
+        &self,
+        session: &xr::Session<xr::Vulkan>,
+        side: Side,
+        amplitude: f32,
+        duration: xr::Duration,
+    ) -> Result<(), HeadsetError> {
+        let vibration = xr::HapticVibration::new()
+            .amplitude(amplitude.clamp(0.0, 1.0))
+            .frequency(xr::FREQUENCY_UNSPECIFIED)
+            .duration(duration);
+        let hand = self.hands[side as usize];
+        Ok(self.haptic.apply_feedback(session, hand, &vibration)?)
+    }
+
+    /// The profile that the runtime has chosen for a hand, as its path; `None` without a controller.
+    pub fn profile(
+        &self,
+        session: &xr::Session<xr::Vulkan>,
+        side: Side,
+    ) -> Result<Option<String>, HeadsetError> {
+        let path = session.current_interaction_profile(self.hands[side as usize])?;
+        if path == xr::Path::NULL {
+            return Ok(None);
+        }
+        Ok(Some(session.instance().path_to_string(path)?))
+    }
+}
+
+fn is_enabled(runtime: &Runtime, extension: &str) -> bool {
+    let name = [extension.as_bytes(), b"\0"].concat();
+    runtime.enabled.other.contains(&name)
+}

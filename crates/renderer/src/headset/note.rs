@@ -1,0 +1,61 @@
+//! What the runtime says between frames.
+
+use openxr as xr;
+
+use super::actions::Side;
+
+/// How much of the participant's attention the session has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Focus {
+    /// The runtime does not want frames: the headset lies on a table, or the session has only just begun.
+    Stopped,
+    /// Frames are counted and not shown.
+    Hidden,
+    /// Frames are shown and something else has the hands: a menu of the system.
+    Visible,
+    /// The participant is here.
+    Focused,
+}
+
+/// Something that the runtime said, for the journal and the screen.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Note {
+    /// The session's focus changed.
+    Focus(Focus),
+    /// The runtime asks the program to end.
+    Exit,
+    /// A hand's controller, as the path of its profile; `None` when it was switched off.
+    Profile {
+        /// Which hand.
+        side: Side,
+        /// The profile's path.
+        profile: Option<String>,
+    },
+    /// The runtime refused a profile's bindings.
+    BindingsRejected {
+        /// The profile, as people call it.
+        profile: &'static str,
+        /// The runtime's answer.
+        answer: String,
+    },
+    /// The floor was measured anew, or the participant recentred.
+    Recentred,
+    /// The headset was put on or taken off.
+    Worn(bool),
+    /// The display's rate [Hz].
+    RefreshRate(f32),
+}
+
+impl From<xr::SessionState> for Focus {
+    fn from(state: xr::SessionState) -> Self {
+        if state == xr::SessionState::FOCUSED {
+            Self::Focused
+        } else if state == xr::SessionState::VISIBLE {
+            Self::Visible
+        } else if state == xr::SessionState::SYNCHRONIZED {
+            Self::Hidden
+        } else {
+            Self::Stopped
+        }
+    }
+}
