@@ -28,6 +28,8 @@ window_packages=(
 test_packages=(
   "xvfb|a screen in memory, for the window's test"
   "xdotool|real key and mouse events, for the window's test"
+  "mmdebstrap|unpacks the OpenXR runtime, for the headset's tests"
+  "iproute2|a network of their own, for the headset's tests"
 )
 
 is_installed() {

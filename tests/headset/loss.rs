@@ -1,0 +1,193 @@
+//! What a session survives: focus, tracking, and the runtime itself come and go; the game and its journal stay.
+
+use std::path::Path;
+use std::time::Duration;
+
+use game::Model;
+
+use crate::client::Client;
+use crate::machine::runtime;
+use crate::play::start;
+use crate::room::{Hand, PATIENCE, Room};
+use crate::service::{Compositor, Service};
+
+/// A program that plays, and somebody in its room.
+struct Played {
+    service: Service,
+    client: Client,
+    room: Room,
+    out: tempfile::TempDir,
+}
+
+fn play() -> Option<Played> {
+    let runtime = runtime()?;
+    let service = Service::start(&runtime, Compositor::Null);
+    let out = tempfile::tempdir().expect("a temporary folder");
+    let folder = out.path().join("session");
+    let mut client = start(&service, &folder);
+    let room = Room::enter(&service, &mut client, &folder);
+    Some(Played {
+        service,
+        client,
+        room,
+        out,
+    })
+}
+
+impl Played {
+    /// Ends the program, and has it replay its own journal: every input, event and the last state must be there.
+    fn end(self) {
+        let (status, said) = self.client.finish();
+        assert!(status.success(), "{said}");
+        replays(&self.out.path().join("session"));
+    }
+}
+
+fn replays(session: &Path) {
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_bowling"))
+        .args(["--root", env!("CARGO_MANIFEST_DIR"), "replay"])
+        .arg(session)
+        .output()
+        .expect("the program starts");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+}
+
+/// The runtime dies with a ball in the hand. The program says so, waits, connects to the next one, and the same game goes on:
+/// the ball is still in the hand, and no time has passed in the alley.
+#[test]
+fn a_killed_runtime_is_waited_for() {
+    let Some(mut played) = play() else { return };
+    let room = &mut played.room;
+    room.take_ball(Hand::Right);
+    let steps = room.game.steps();
+    played.service.kill();
+    played.client.wait_for("waits for the headset", PATIENCE);
+    room.wait_until("the loss in the journal", |room| {
+        room.said
+            .iter()
+            .any(|line| line["device"]["lost"].is_string())
+    });
+    assert!(room.game.steps() < steps + 720, "the alley stood still");
+    assert_eq!(room.game.held(), Some(Model::Ball(0)));
+    played.service.restart();
+    played
+        .client
+        .wait_for("Connected to the headset again", PATIENCE);
+    let focused = |room: &Room| {
+        let lines = room
+            .said
+            .iter()
+            .filter(|line| line["device"]["focus"] == "focused");
+        lines.count()
+    };
+    room.reconnect(&played.service);
+    room.wait_until("the focus again", |room| focused(room) == 2);
+    let held_before = room.input;
+    room.wait_until("time goes on", |room| {
+        room.input != held_before && room.input.steps > 0
+    });
+    assert_eq!(room.game.held(), Some(Model::Ball(0)));
+    played.end();
+}
+
+/// As above, asked to end instead of killed.
+#[test]
+fn a_runtime_that_is_asked_to_end_is_waited_for() {
+    let Some(mut played) = play() else { return };
+    played.service.terminate();
+    played.client.wait_for("waits for the headset", PATIENCE);
+    played.service.restart();
+    played
+        .client
+        .wait_for("Connected to the headset again", PATIENCE);
+    played.end();
+}
+
+/// A runtime that hangs blocks its caller for ever; the program notices, says so, and can be ended with all its data.
+#[test]
+fn a_runtime_that_hangs_is_noticed() {
+    let Some(mut played) = play() else { return };
+    played.service.stop();
+    played.client.wait_for("does not answer", PATIENCE);
+    played.service.cont();
+    played.client.wait_for("answers again", PATIENCE);
+    played.service.stop();
+    played.client.wait_for("does not answer", PATIENCE);
+    let Played {
+        mut service,
+        client,
+        out,
+        ..
+    } = played;
+    let (status, said) = client.finish();
+    assert!(status.success(), "{said}");
+    replays(&out.path().join("session"));
+    service.cont();
+}
+
+/// Another program takes the hands: time stands still and the hand is gone, until they come back.
+#[test]
+fn a_lost_focus_pauses_the_game() {
+    let Some(mut played) = play() else { return };
+    let room = &mut played.room;
+    let elsewhere = tempfile::tempdir().expect("a temporary folder");
+    let mut other = start(&played.service, &elsewhere.path().join("session"));
+    other.wait_for("Recording into", PATIENCE);
+    room.wait_until("the loss of focus", |room| room.input.hand.is_none());
+    let steps = room.game.steps();
+    room.follow(Duration::from_secs(1));
+    room.follow(Duration::from_millis(300));
+    assert_eq!(room.game.steps(), steps);
+    let (status, said) = other.finish();
+    assert!(status.success(), "{said}");
+    room.wait_until("the focus", |room| {
+        room.input.hand.is_some() && room.input.steps > 0
+    });
+    played.end();
+}
+
+/// The hand is lost with a ball in it: the ball is held for 300 ms, and then it falls.
+#[test]
+fn a_lost_hand_drops_the_ball_after_a_while() {
+    let Some(mut played) = play() else { return };
+    let room = &mut played.room;
+    room.take_ball(Hand::Right);
+    room.hand(Hand::Right).is_tracked = false;
+    room.send();
+    room.wait_until("the loss", |room| room.input.hand.is_none());
+    let lost = room.game.steps();
+    assert_eq!(room.game.held(), Some(Model::Ball(0)));
+    room.wait_until("the fall", |room| room.count("dropped") == 1);
+    let after = (room.game.steps() - lost) as f64 / 720.0;
+    // A frame of the runtime without a compositor is 50 ms long.
+    assert!((0.25..0.5).contains(&after), "dropped after {after} s");
+    played.end();
+}
+
+/// Without a service: one sentence, and on to whoever can play without a headset.
+#[test]
+fn a_missing_service_is_named_and_done_without() {
+    let Some(runtime) = runtime() else { return };
+    let mut service = Service::start(&runtime, Compositor::Null);
+    service.kill();
+    let out = tempfile::tempdir().expect("a temporary folder");
+    let folder = out.path().join("session");
+    let arguments = |device: &'static [&'static str]| {
+        let mut arguments = vec!["play", "--frames", "1", "--no-video", "--out"];
+        arguments.push(folder.to_str().expect("a plain path"));
+        arguments.extend(device);
+        arguments
+    };
+    let client = Client::start(&service, &arguments(&["--device", "headset"]));
+    let (status, said) = client.wait();
+    assert!(!status.success());
+    assert!(
+        said.contains("does not answer: start its service"),
+        "{said}"
+    );
+    let client = Client::start(&service, &arguments(&[]));
+    let (status, said) = client.wait();
+    assert!(status.success(), "{said}");
+    assert!(said.contains("because there is no headset"), "{said}");
+}

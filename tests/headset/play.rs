@@ -1,0 +1,133 @@
+//! Playing through the runtime: walking, grabbing, swinging, releasing, scoring.
+
+use std::path::Path;
+
+use game::Phase;
+use glam::DVec3;
+use serde_json::Value;
+
+use crate::client::Client;
+use crate::machine::runtime;
+use crate::room::{Hand, Released, Room, Swing};
+use crate::service::{Compositor, Service};
+
+/// Beside the rack, so that a ball is within reach of either hand.
+const BESIDE_RACK: [&str; 4] = ["--set", "start.x_m=0.75", "--set", "start.z_m=2.25"];
+
+/// Starts the program beside the rack, in a game of one frame that is recorded into `folder`.
+pub fn start(service: &Service, folder: &Path) -> Client {
+    let folder = folder.to_str().expect("a plain path");
+    let mut arguments = vec!["play", "--device", "headset", "--frames", "1", "--no-video"];
+    arguments.extend(["--out", folder]);
+    arguments.extend(BESIDE_RACK);
+    Client::start(service, &arguments)
+}
+
+fn vector(value: &Value) -> DVec3 {
+    let number = |index: usize| value[index].as_f64().expect("three numbers");
+    DVec3::new(number(0), number(1), number(2))
+}
+
+/// Within 2 % and 1 degree of the swing, and from where the swing had the ball.
+fn agrees(event: &Value, truth: Released) {
+    assert_eq!(event["source"], "velocity", "{event}");
+    let used = vector(&event["used"]["linear"]);
+    let ratio = used.length() / truth.velocity.length();
+    assert!(
+        (ratio - 1.0).abs() < 0.02,
+        "speed {ratio} of the swing's: {event}"
+    );
+    let angle = used.angle_between(truth.velocity).to_degrees();
+    assert!(angle < 1.0, "direction off by {angle} degrees: {event}");
+    let off = vector(&event["position"]).distance(truth.position);
+    assert!(
+        off < 0.01,
+        "let go {off} m from where the swing had it: {event}"
+    );
+}
+
+/// A game of one frame: chosen by the buttons of the other hand, played to its score.
+#[test]
+fn a_whole_frame_is_played() {
+    let Some(runtime) = runtime() else { return };
+    let service = Service::start(&runtime, Compositor::Null);
+    let out = tempfile::tempdir().expect("a temporary folder");
+    let folder = out.path().join("session");
+    let mut client = start(&service, &folder);
+    let mut room = Room::enter(&service, &mut client, &folder);
+    room.wait_until("a known controller", |room| {
+        room.has_said("profile", "/interaction_profiles/valve/index_controller")
+    });
+    // Red by the upper thumb button of the hand that does not throw.
+    room.packet.left.b = true;
+    room.send();
+    room.wait_until("a Red game", |room| room.count("game_started") == 1);
+    room.packet.left.b = false;
+    room.send();
+    assert_eq!(
+        room.event("game_started").expect("just seen")["button"],
+        "red"
+    );
+    let swing = Swing {
+        speed: 6.5,
+        release_at: 0.1,
+    };
+    let mut throws = 0;
+    while room.count("frame_scored") == 0 {
+        assert!(throws < 3, "a last frame has three balls at most");
+        room.take_ball(Hand::Right);
+        room.walk_to(Hand::Right, -0.2, 0.9);
+        let truth = swing.throw(&mut room, Hand::Right);
+        throws += 1;
+        agrees(room.event("released").expect("just seen"), truth);
+        room.wait_until("the pins counted", |room| room.count("settled") == throws);
+        room.wait_until("the pinsetter", |room| {
+            room.game.phase() == Phase::Ready || room.count("game_over") == 1
+        });
+        room.walk_to(Hand::Right, 0.6, 2.3);
+    }
+    let total = room.event("frame_scored").expect("just seen")["total"].clone();
+    let (status, said) = client.finish();
+    assert!(status.success(), "{said}");
+    let sheet = std::fs::read_to_string(folder.join("red-score.txt")).expect("a score sheet");
+    assert!(
+        sheet.contains(&total.to_string()),
+        "{total} is not in {sheet}"
+    );
+}
+
+/// The swing's own speed and direction, whichever hand, however often the display shows a picture.
+#[test]
+fn a_release_is_the_swings_own_at_every_rate() {
+    let Some(runtime) = runtime() else { return };
+    for (hz, hand) in [
+        (45, Hand::Left),
+        (72, Hand::Right),
+        (90, Hand::Left),
+        (120, Hand::Right),
+    ] {
+        let service = Service::start(&runtime, Compositor::Xvfb { hz });
+        let out = tempfile::tempdir().expect("a temporary folder");
+        let folder = out.path().join("session");
+        let mut client = start(&service, &folder);
+        let mut room = Room::enter(&service, &mut client, &folder);
+        let rate = room
+            .said
+            .iter()
+            .find_map(|line| line["device"]["refresh_rate_hz"].as_f64())
+            .expect("the runtime tells its rate");
+        assert!(
+            (rate - f64::from(hz)).abs() < 0.01,
+            "{rate} Hz instead of {hz}"
+        );
+        room.take_ball(hand);
+        let truth = Swing {
+            speed: 5.0 + f64::from(hz) / 40.0,
+            release_at: 0.15,
+        }
+        .throw(&mut room, hand);
+        agrees(room.event("released").expect("just seen"), truth);
+        let (status, said) = client.finish();
+        assert!(status.success(), "{said}");
+    }
+}

@@ -1,0 +1,391 @@
+use std::fs::{self, OpenOptions};
+use std::io::{BufRead, BufReader, Read};
+use std::net::{Ipv4Addr, TcpListener};
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitStatus, Stdio};
+use std::time::Duration;
+
+use rustix::process::Signal;
+use tempfile::TempDir;
+
+use super::ask_until;
+use super::process::Process;
+
+/// Longest wait for the service: software Vulkan on a busy machine takes seconds to start.
+const PATIENCE: Duration = Duration::from_secs(60);
+/// The service's socket, in its runtime folder.
+const SOCKET: &str = "monado_comp_ipc";
+
+/// What shows the frames.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Compositor {
+    /// Nothing: frames are taken and dropped, 20 a second, which is built into Monado.
+    Null,
+    /// The real compositor in a window on a screen in memory.
+    Xvfb {
+        /// Frames a second.
+        hz: u32,
+    },
+}
+
+/// Monado's service with the remote driver, in folders and on a port of its own.
+pub struct Service {
+    // Before the screen: the service must not outlive what it draws on.
+    process: Process,
+    screen: Option<Screen>,
+    runtime: PathBuf,
+    folder: TempDir,
+    port: u16,
+}
+
+impl Service {
+    /// Starts the service of the runtime in the folder `runtime` and waits until programs and [`super::remote::Remote`] can
+    /// connect.
+    ///
+    /// # Panics
+    /// With its log, when the service does not come up.
+    pub fn start(runtime: &Path, compositor: Compositor) -> Self {
+        // In the system's folder: a socket's path has room for 107 bytes only.
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let port = free_port();
+        fs::create_dir(folder.path().join("run")).expect("a fresh folder");
+        let settings = folder.path().join("config/monado");
+        fs::create_dir_all(&settings).expect("a fresh folder");
+        fs::write(
+            settings.join("config_v0.json"),
+            format!(
+                r#"{{"active": "remote", "remote": {{"version": 0, "port": {port}, "view_count": 2}}}}"#
+            ),
+        )
+        .expect("a fresh folder");
+        let screen = match compositor {
+            Compositor::Null => None,
+            Compositor::Xvfb { hz } => Some(Screen::open(hz)),
+        };
+        let process = launch(runtime, folder.path(), port, screen.as_ref());
+        Self {
+            process,
+            screen,
+            runtime: runtime.to_owned(),
+            folder,
+            port,
+        }
+    }
+
+    /// Starts it again after its end, in the same folder and on the same port, so that programs find it where it was.
+    ///
+    /// # Panics
+    /// When it still runs, or, with its log, when it does not come up.
+    pub fn restart(&mut self) {
+        assert!(self.process.ended().is_some(), "the service still runs");
+        self.process = launch(
+            &self.runtime,
+            self.folder.path(),
+            self.port,
+            self.screen.as_ref(),
+        );
+    }
+
+    /// The remote driver's port.
+    pub fn port(&self) -> u16 {
+        self.port
+    }
+
+    /// A command that runs `program` with the runtime's libraries, as a client of this service.
+    pub fn client_command(&self, program: &Path) -> Command {
+        let mut command = Command::new(self.runtime.join("ld"));
+        command
+            .arg(program)
+            .env("XDG_RUNTIME_DIR", run_folder(self.folder.path()))
+            .env_remove("DISPLAY")
+            .env_remove("WAYLAND_DISPLAY")
+            .stdin(Stdio::null());
+        command
+    }
+
+    /// What the service has said so far, over all its starts.
+    pub fn log(&self) -> String {
+        read_log(self.folder.path())
+    }
+
+    /// Kills it without a warning, and waits until it is gone.
+    pub fn kill(&mut self) {
+        self.process.kill();
+    }
+
+    /// Asks it to end; how it ended. Monado 25 leaves that to the system: by the signal, its socket left behind.
+    ///
+    /// # Panics
+    /// When it does not end.
+    pub fn terminate(&mut self) -> ExitStatus {
+        self.process.signal(Signal::TERM);
+        let ended = self.process.ended_within(PATIENCE);
+        ended.expect("the service ends when it is asked to")
+    }
+
+    /// Stops all its threads where they stand, until [`Self::cont`].
+    ///
+    /// # Panics
+    /// When it runs on.
+    pub fn stop(&mut self) {
+        self.process.signal(Signal::STOP);
+        let stopped = ask_until(PATIENCE, || self.process.is_stopped().then_some(()));
+        assert!(stopped.is_some(), "the service runs on");
+    }
+
+    /// Lets it go on after [`Self::stop`].
+    pub fn cont(&mut self) {
+        self.process.signal(Signal::CONT);
+    }
+
+    /// Runs `monado-ctl`: without arguments it lists clients and devices, `-f ID` gives a client the focus, `-i ID` cuts a
+    /// client's input or gives it back, `-p ID` makes it the one that is shown, `-c` recentres. What it says.
+    ///
+    /// # Panics
+    /// When it fails, or gets no answer from the service.
+    pub fn ctl(&self, arguments: &[&str]) -> String {
+        let mut command = self.client_command(&self.runtime.join("root/usr/bin/monado-ctl"));
+        command
+            .args(arguments)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped());
+        let mut process = Process::start("monado-ctl", &mut command);
+        // It says a few lines, which a pipe holds: reading can wait for its end.
+        let ended = process.ended_within(PATIENCE);
+        let ended =
+            ended.unwrap_or_else(|| panic!("the service does not answer monado-ctl {arguments:?}"));
+        let mut said = String::new();
+        let mut complaint = String::new();
+        let child = process.child();
+        let (output, errors) = (child.stdout.take(), child.stderr.take());
+        output
+            .expect("piped")
+            .read_to_string(&mut said)
+            .expect("monado-ctl writes text");
+        errors
+            .expect("piped")
+            .read_to_string(&mut complaint)
+            .expect("monado-ctl writes text");
+        assert!(
+            ended.success(),
+            "monado-ctl {arguments:?}: {ended}\n{said}{complaint}"
+        );
+        said
+    }
+
+    /// The number by which `monado-ctl` knows the program that calls itself `name`; none while it is not connected.
+    pub fn client_id(&self, name: &str) -> Option<u32> {
+        client_id(&self.ctl(&[]), name)
+    }
+}
+
+impl Drop for Service {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            eprintln!("the service's log:\n{}", self.log());
+        }
+    }
+}
+
+/// The number of the client called `name`, in what `monado-ctl` lists: fields between tabs, `id: 3` first, the name last.
+fn client_id(listing: &str, name: &str) -> Option<u32> {
+    let clients = listing
+        .lines()
+        .skip_while(|line| !line.starts_with("Clients"));
+    let mut clients = clients.take_while(|line| !line.starts_with("Devices"));
+    clients.find_map(|line| {
+        let mut fields = line.trim().split('\t');
+        let id = fields.next()?.strip_prefix("id: ")?;
+        (fields.next_back() == Some(name)).then(|| id.parse().ok())?
+    })
+}
+
+fn run_folder(folder: &Path) -> PathBuf {
+    folder.join("run")
+}
+
+fn read_log(folder: &Path) -> String {
+    let bytes = fs::read(folder.join("service.log")).unwrap_or_default();
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+/// Starts the service and waits until its socket and the remote driver's port are open.
+fn launch(runtime: &Path, folder: &Path, port: u16, screen: Option<&Screen>) -> Process {
+    let socket = run_folder(folder).join(SOCKET);
+    // A killed service leaves its socket behind; the next one's must not be mistaken for it.
+    if socket.exists() {
+        fs::remove_file(&socket).expect("the service's own folder");
+    }
+    let before = read_log(folder).len();
+    let log = OpenOptions::new()
+        .create(true)
+        .append(true)
+        .open(folder.join("service.log"))
+        .expect("the service's own folder");
+    let mut command = Command::new(runtime.join("ld"));
+    command
+        .arg(runtime.join("root/usr/bin/monado-service"))
+        .env("XDG_RUNTIME_DIR", run_folder(folder))
+        .env("XDG_CONFIG_HOME", folder.join("config"))
+        .env("P_OVERRIDE_ACTIVE_CONFIG", "remote")
+        .env("XRT_NO_STDIN", "1")
+        .env_remove("DISPLAY")
+        .env_remove("WAYLAND_DISPLAY")
+        .stdin(Stdio::null());
+    match screen {
+        None => command.env("XRT_COMPOSITOR_NULL", "1"),
+        Some(screen) => command
+            .env("DISPLAY", &screen.display)
+            .env("XRT_COMPOSITOR_FORCE_XCB", "1")
+            .env("XRT_COMPOSITOR_DEFAULT_FRAMERATE", screen.hz.to_string())
+            // At once, so that a screen that does not do fails the start and not the first frame.
+            .env("XRT_COMPOSITOR_DISABLE_DEFERRED", "1")
+            // A quarter of what it recommends, 240 by 270 for an eye: software Vulkan must hold the rate.
+            .env("XRT_COMPOSITOR_SCALE_PERCENTAGE", "25")
+            .env("XRT_COMPOSITOR_COMPUTE", "1"),
+    };
+    command.stderr(log.try_clone().expect("an open file"));
+    command.stdout(log);
+    let mut process = Process::start("monado-service", &mut command);
+    let listening = format!("Listening on port '{port}'");
+    let up = ask_until(PATIENCE, || {
+        let log = read_log(folder);
+        let said =
+            log[before..].contains("service has started") && log[before..].contains(&listening);
+        if said && socket.exists() {
+            return Some(true);
+        }
+        process.ended().map(|_| false)
+    });
+    assert!(
+        up == Some(true),
+        "the service does not come up, {}:\n{}",
+        process
+            .ended()
+            .map_or("but runs".to_owned(), |ended| ended.to_string()),
+        read_log(folder)
+    );
+    process
+}
+
+/// A screen in memory.
+struct Screen {
+    _server: Process,
+    display: String,
+    hz: u32,
+}
+
+impl Screen {
+    fn open(hz: u32) -> Self {
+        let mut command = Command::new("Xvfb");
+        command
+            .args(["-displayfd", "1", "-nolisten", "tcp"])
+            // Its socket belongs to this network, and not to a folder that screens of other networks share: there it
+            // would take the place of one with the same number.
+            .args(["-nolisten", "unix"])
+            // Room for the compositor's window of 960 by 540.
+            .args(["-screen", "0", "960x540x24"])
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null());
+        let mut server = Process::start("Xvfb (package xvfb)", &mut command);
+        let output = server.child().stdout.take().expect("piped");
+        let mut number = String::new();
+        BufReader::new(output)
+            .read_line(&mut number)
+            .expect("Xvfb writes text");
+        assert!(number.ends_with('\n'), "Xvfb ends without a display");
+        Self {
+            _server: server,
+            display: format!(":{}", number.trim()),
+            hz,
+        }
+    }
+}
+
+/// A port that nobody listens on now.
+fn free_port() -> u16 {
+    let listener = TcpListener::bind((Ipv4Addr::UNSPECIFIED, 0)).expect("a free port");
+    listener.local_addr().expect("it is bound").port()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::machine::runtime;
+    use super::super::remote::{Packet, Remote};
+    use super::*;
+
+    #[test]
+    fn client_id_is_found_by_the_programs_name() {
+        let listing = "Clients:\n\
+             \tid: 1\tact: 0\tdisp: 0\tfoc: 0\tio: 1\tovly: 0\tz: 0\tpid: 7\tmonado-ctl\n\
+             \tid: 12\tact: 1\tdisp: 1\tfoc: 1\tio: 1\tovly: 0\tz: 0\tpid: 8\tbowling\n\
+             \nDevices:\n\tid: 0\tname: 1\t\"Remote HMD\"\n";
+        assert_eq!(client_id(listing, "bowling"), Some(12));
+        assert_eq!(client_id(listing, "bowl"), None);
+        assert_eq!(client_id(listing, "\"Remote HMD\""), None);
+    }
+
+    #[test]
+    fn the_service_lists_what_it_drives_and_who_asks() {
+        let Some(runtime) = runtime() else { return };
+        let service = Service::start(&runtime, Compositor::Null);
+        let listing = service.ctl(&[]);
+        assert!(listing.contains("\"Remote HMD\""), "{listing}");
+        assert!(service.client_id("monado-ctl").is_some(), "{listing}");
+        assert_eq!(service.client_id("nobody"), None);
+    }
+
+    #[test]
+    fn the_service_stops_and_goes_on() {
+        let Some(runtime) = runtime() else { return };
+        let mut service = Service::start(&runtime, Compositor::Null);
+        service.stop();
+        // The system takes the connection for it, but nobody answers.
+        let mut stream = std::net::TcpStream::connect((Ipv4Addr::LOCALHOST, service.port()))
+            .expect("the port stays open");
+        stream
+            .set_read_timeout(Some(Duration::from_millis(200)))
+            .expect("a time above zero");
+        assert!(
+            stream.read(&mut [0; 8]).is_err(),
+            "a stopped service answers"
+        );
+        service.cont();
+        stream
+            .set_read_timeout(Some(PATIENCE))
+            .expect("a time above zero");
+        // Both of its packets: it dies of writing to a connection that was closed before it wrote.
+        stream
+            .read_exact(&mut [0; 2 * 376])
+            .expect("the driver goes on");
+    }
+
+    #[test]
+    fn the_service_comes_back_where_it_was() {
+        let Some(runtime) = runtime() else { return };
+        let mut service = Service::start(&runtime, Compositor::Null);
+        let mut remote = Remote::connect(service.port()).expect("the driver listens");
+        service.kill();
+        // The first write may still go into the void; the answer to it closes the connection.
+        let lost = ask_until(PATIENCE, || remote.send(&Packet::default()).err());
+        assert!(lost.is_some(), "a killed service reads on");
+        service.restart();
+        Remote::connect(service.port()).expect("the driver listens again");
+        service.terminate();
+        assert!(
+            Remote::connect(service.port()).is_err(),
+            "it listens on after its end"
+        );
+    }
+
+    #[test]
+    fn the_real_compositor_starts_on_a_screen_in_memory() {
+        let Some(runtime) = runtime() else { return };
+        let service = Service::start(&runtime, Compositor::Xvfb { hz: 90 });
+        Remote::connect(service.port()).expect("the driver listens");
+        // What it prints when the screen has given it images to draw on.
+        let log = service.log();
+        assert!(log.contains("VkSwapchainCreateInfoKHR"), "{log}");
+    }
+}
