@@ -38,6 +38,11 @@ impl Machine {
             window: window_possible(|name| std::env::var_os(name).is_some()),
         }
     }
+
+    /// Whether a window can be hoped for.
+    pub fn has_display() -> bool {
+        window_possible(|name| std::env::var_os(name).is_some()).is_ok()
+    }
 }
 
 /// Whether a window can be hoped for; opening it may still fail, with its own sentence.

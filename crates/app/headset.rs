@@ -5,18 +5,20 @@
 //! dies is connected to anew; the game waits meanwhile.
 
 mod frames;
+mod mirror;
 mod pulses;
+mod watch;
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::mpsc::{self, RecvTimeoutError};
+use std::sync::mpsc;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
-use game::Config;
+use game::{Button, Config};
 use renderer::headset::{Focus, HeadsetError, HeadsetSession, HeadsetSettings, Note};
-use renderer::{Renderer, RendererSettings};
+use renderer::{Renderer, RendererSettings, View};
 use serde_json::json;
 
 use crate::convert::{self, Stock};
@@ -25,9 +27,8 @@ use crate::pictures::{Painter, Wanted};
 use crate::play::{self, Progress};
 use crate::session::{Session, Setup};
 use frames::FrameTimes;
+use watch::Watch;
 
-/// A frame that takes longer than this is a runtime that does not answer.
-const PATIENCE: Duration = Duration::from_secs(2);
 /// Time between two attempts to connect anew.
 const RETRY: Duration = Duration::from_millis(500);
 /// How often the runtime is asked whether it wants frames, while it wants none.
@@ -40,6 +41,10 @@ struct Shared {
     /// Milliseconds since `began` at which the runtime's thread last came round.
     beat_ms: AtomicU64,
     began: Instant,
+    /// What the left eye saw last, world frame.
+    left_eye: Mutex<Option<View>>,
+    /// The experimenter's keys for Red and Blue: whether they are down.
+    keys: [AtomicBool; 2],
     stop: Arc<AtomicBool>,
 }
 
@@ -53,6 +58,19 @@ impl Shared {
     fn silence(&self) -> Duration {
         let beat = Duration::from_millis(self.beat_ms.load(Ordering::Relaxed));
         self.began.elapsed().saturating_sub(beat)
+    }
+
+    /// The experimenter holds a key down, or lets it go.
+    fn hold_key(&self, button: Button, is_down: bool) {
+        self.keys[button as usize].store(is_down, Ordering::Relaxed);
+    }
+
+    fn key(&self, button: Button) -> bool {
+        self.keys[button as usize].load(Ordering::Relaxed)
+    }
+
+    fn left_eye(&self) -> Option<View> {
+        *self.left_eye.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn must_stop(&self) -> bool {
@@ -97,6 +115,8 @@ pub fn run(setup: Setup, root: &Path, wanted: Wanted, refresh_rate_hz: Option<f3
         session: Mutex::new(Some(session)),
         beat_ms: AtomicU64::new(0),
         began: Instant::now(),
+        left_eye: Mutex::new(None),
+        keys: Default::default(),
         stop: Arc::clone(&stop),
     });
     let player = Player {
@@ -115,7 +135,8 @@ pub fn run(setup: Setup, root: &Path, wanted: Wanted, refresh_rate_hz: Option<f3
             let _ = sender.send(player.play(stage));
         })
         .context("cannot start the headset's thread")?;
-    let outcome = watch(&shared, &ended);
+    let watch = Watch::new(Arc::clone(&shared), ended);
+    let outcome = mirror::stay(watch, Arc::clone(&shared), root, &config);
     let session = shared
         .session
         .lock()
@@ -129,42 +150,6 @@ pub fn run(setup: Setup, root: &Path, wanted: Wanted, refresh_rate_hz: Option<f3
         return outcome;
     }
     finish(session, root, &config, wanted, stop)
-}
-
-/// Waits for the end of play, and says so when the runtime stops answering.
-fn watch(shared: &Shared, ended: &mpsc::Receiver<Result<()>>) -> Result<()> {
-    let mut is_silent = false;
-    let mut asked_to_stop: Option<Instant> = None;
-    loop {
-        match ended.recv_timeout(Duration::from_millis(100)) {
-            Ok(outcome) => return outcome,
-            Err(RecvTimeoutError::Disconnected) => anyhow::bail!(
-                "the headset's thread ended by a fault of the program; the recording is in order up to here"
-            ),
-            Err(RecvTimeoutError::Timeout) => {}
-        }
-        let silent = shared.silence() > PATIENCE;
-        if silent != is_silent {
-            is_silent = silent;
-            println!(
-                "{}",
-                if silent {
-                    "The OpenXR runtime does not answer: the game waits. Ctrl-C ends and saves."
-                } else {
-                    "The OpenXR runtime answers again."
-                }
-            );
-            shared.note(json!({ "runtime_answers": !silent }))?;
-            shared.with(Session::flush)?;
-        }
-        if shared.must_stop() {
-            // A thread that hangs in the runtime is left behind; the session is not.
-            let since = *asked_to_stop.get_or_insert_with(Instant::now);
-            if since.elapsed() > PATIENCE && silent {
-                return Ok(());
-            }
-        }
-    }
 }
 
 fn finish(
@@ -287,15 +272,17 @@ impl Player {
         let frame = headset.wait()?;
         let readings = headset.read(&frame)?;
         let is_here = headset.focus() == Focus::Focused;
-        let participant = &mut self.participant;
+        let (participant, keys) = (&mut self.participant, &self.shared);
         let played = self.shared.with(|session| {
-            let input = if is_here {
+            let mut input = if is_here {
                 let is_holding = session.game().held().is_some();
                 let (at, period) = (frame.display_time_ns(), frame.period_s());
                 participant.input(&readings, at, period, is_holding)
             } else {
                 participant.pause(&readings)
             };
+            input.press_red |= keys.key(Button::Red);
+            input.press_blue |= keys.key(Button::Blue);
             let held = session.game().held();
             session.frame(input)?;
             let game = session.game();
@@ -315,7 +302,12 @@ impl Player {
         let timing = self.times.of(&frame, simulated);
         if frame.should_render() {
             let rig = (rig.position.as_vec3(), rig.rotation.as_quat());
-            headset.show(frame, &mut stage.renderer, &scene, rig, false)?;
+            let (views, _) = headset.show(frame, &mut stage.renderer, &scene, rig, false)?;
+            *self
+                .shared
+                .left_eye
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner) = views.first().copied();
         } else {
             headset.skip(frame)?;
         }

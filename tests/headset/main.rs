@@ -4,6 +4,8 @@
 
 /// The program as the runtime's client, and the journal that it writes.
 mod client;
+/// What the eyes show, and what the validation layers say.
+mod eyes;
 /// Focus, tracking and the runtime come and go.
 mod loss;
 /// What the machine must offer: the unpacked runtime, a network without neighbours.

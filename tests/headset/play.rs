@@ -1,14 +1,18 @@
 //! Playing through the runtime: walking, grabbing, swinging, releasing, scoring.
 
+use std::ffi::OsStr;
 use std::path::Path;
+use std::process::Command;
+use std::time::Duration;
 
 use game::Phase;
 use glam::DVec3;
 use serde_json::Value;
 
+use crate::ask_until;
 use crate::client::Client;
 use crate::machine::runtime;
-use crate::room::{Hand, Released, Room, Swing};
+use crate::room::{Hand, PATIENCE, Released, Room, Swing};
 use crate::service::{Compositor, Service};
 
 /// Beside the rack, so that a ball is within reach of either hand.
@@ -16,11 +20,16 @@ const BESIDE_RACK: [&str; 4] = ["--set", "start.x_m=0.75", "--set", "start.z_m=2
 
 /// Starts the program beside the rack, in a game of one frame that is recorded into `folder`.
 pub fn start(service: &Service, folder: &Path) -> Client {
+    start_in(service, folder, &[])
+}
+
+/// As [`start`], with more in its environment.
+pub fn start_in(service: &Service, folder: &Path, environment: &[(&str, &OsStr)]) -> Client {
     let folder = folder.to_str().expect("a plain path");
     let mut arguments = vec!["play", "--device", "headset", "--frames", "1", "--no-video"];
     arguments.extend(["--out", folder]);
     arguments.extend(BESIDE_RACK);
-    Client::start(service, &arguments)
+    Client::start_in(service, &arguments, environment)
 }
 
 fn vector(value: &Value) -> DVec3 {
@@ -94,6 +103,45 @@ fn a_whole_frame_is_played() {
         sheet.contains(&total.to_string()),
         "{total} is not in {sheet}"
     );
+}
+
+/// The experimenter's window shows the participant's room, and its keys press Red and Blue.
+#[test]
+fn the_mirror_shows_the_room_and_takes_the_experimenters_keys() {
+    let Some(runtime) = runtime() else { return };
+    let service = Service::start(&runtime, Compositor::Xvfb { hz: 45 });
+    let out = tempfile::tempdir().expect("a temporary folder");
+    let folder = out.path().join("session");
+    let display = [("DISPLAY", OsStr::new(service.display()))];
+    let mut client = start_in(&service, &folder, &display);
+    let mut room = Room::enter(&service, &mut client, &folder);
+    let xdotool = |arguments: &[&str]| {
+        let output = Command::new("xdotool")
+            .args(arguments)
+            .env("DISPLAY", service.display())
+            .output()
+            .expect("xdotool starts: install the package xdotool, as scripts/test.sh does");
+        String::from_utf8_lossy(&output.stdout).trim().to_owned()
+    };
+    let window = ask_until(PATIENCE, || {
+        let found = xdotool(&["search", "--name", "what the participant sees"]);
+        (!found.is_empty()).then_some(found)
+    })
+    .expect("the mirror opens");
+    // Until the window has been drawn it takes no keys.
+    let pressed = ask_until(PATIENCE, || {
+        xdotool(&["windowfocus", &window, "key", "2"]);
+        room.follow(Duration::from_millis(200));
+        (room.count("game_started") == 1).then_some(())
+    });
+    assert!(pressed.is_some(), "the key does nothing");
+    assert_eq!(
+        room.event("game_started").expect("just seen")["button"],
+        "blue"
+    );
+    let (status, said) = client.finish();
+    assert!(status.success(), "{said}");
+    assert!(!said.contains("No mirror window"), "{said}");
 }
 
 /// The swing's own speed and direction, whichever hand, however often the display shows a picture.

@@ -91,6 +91,18 @@ impl Service {
         self.port
     }
 
+    /// The display of the real compositor's screen.
+    ///
+    /// # Panics
+    /// With the null compositor, which has none.
+    pub fn display(&self) -> &str {
+        &self
+            .screen
+            .as_ref()
+            .expect("a compositor with a screen")
+            .display
+    }
+
     /// A command that runs `program` with the runtime's libraries, as a client of this service.
     pub fn client_command(&self, program: &Path) -> Command {
         let mut command = Command::new(self.runtime.join("ld"));

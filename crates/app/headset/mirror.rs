@@ -1,0 +1,179 @@
+//! The experimenter's window beside a headset: what the left eye sees, drawn anew at the window's own rate.
+//!
+//! It has a device of its own and takes the game's lock only to copy what is seen, so that no screen slows the headset. Without a
+//! display there is none, and the session is the same.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result, anyhow};
+use game::{Button, Config};
+use renderer::{BackendChoice, Renderer, RendererSettings, WindowTarget};
+use winit::application::ApplicationHandler;
+use winit::dpi::LogicalSize;
+use winit::event::WindowEvent;
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
+use winit::keyboard::{KeyCode, PhysicalKey};
+use winit::window::{Window, WindowId};
+
+use super::{Shared, Watch};
+use crate::convert::{self, Stock};
+
+/// Time between two pictures: enough to follow, little beside the headset's.
+const PERIOD: Duration = Duration::from_millis(33);
+
+/// Stays until the headset's thread has ended; with a window where there is a display.
+///
+/// # Errors
+/// What ended the thread.
+pub fn stay(watch: Watch, shared: Arc<Shared>, root: &Path, config: &Config) -> Result<()> {
+    let is_possible = crate::choose::Machine::has_display();
+    let Some(events) = is_possible.then(|| EventLoop::new().ok()).flatten() else {
+        return watch.wait();
+    };
+    let mut mirror = Mirror {
+        watch,
+        shared,
+        root: root.to_owned(),
+        config: config.clone(),
+        stage: None,
+        is_given_up: false,
+        due: Instant::now(),
+        outcome: None,
+    };
+    events
+        .run_app(&mut mirror)
+        .context("the window system ended the mirror")?;
+    match mirror.outcome {
+        Some(outcome) => outcome,
+        // The window system ended its loop; the participant plays on.
+        None => mirror.watch.wait(),
+    }
+}
+
+/// What exists once the window does.
+struct Stage {
+    target: WindowTarget,
+    renderer: Renderer,
+    stock: Stock,
+}
+
+struct Mirror {
+    watch: Watch,
+    shared: Arc<Shared>,
+    root: PathBuf,
+    config: Config,
+    stage: Option<Stage>,
+    /// The window could not be opened, or drawing into it failed: the participant plays on without.
+    is_given_up: bool,
+    due: Instant,
+    outcome: Option<Result<()>>,
+}
+
+impl Mirror {
+    fn open(&self, events: &ActiveEventLoop) -> Result<Stage> {
+        let attributes = Window::default_attributes()
+            .with_title("Bowling: what the participant sees")
+            .with_inner_size(LogicalSize::new(640, 640));
+        let window = Arc::new(events.create_window(attributes)?);
+        let (gpu, target) = WindowTarget::new(window, BackendChoice::Auto)?;
+        let mut renderer = Renderer::new(&gpu, RendererSettings::default())?;
+        let stock = Stock::load(&mut renderer, &self.root, &self.config)?;
+        Ok(Stage {
+            target,
+            renderer,
+            stock,
+        })
+    }
+
+    fn draw(&mut self) -> Result<()> {
+        let Some(stage) = &mut self.stage else {
+            return Ok(());
+        };
+        let Some(view) = self.shared.left_eye() else {
+            return Ok(());
+        };
+        let seen = self.shared.with(|session| {
+            let game = session.game();
+            Ok((game.visible(), game.held().is_some()))
+        })?;
+        let Some((visible, is_holding)) = seen else {
+            return Ok(());
+        };
+        let scene = convert::scene(visible.iter(), &stage.stock, is_holding);
+        stage
+            .target
+            .draw(&mut stage.renderer, &scene, &[view])
+            .map(|_| ())
+            .map_err(|error| anyhow!(error))
+    }
+
+    fn give_up(&mut self, error: &anyhow::Error) {
+        self.is_given_up = true;
+        self.stage = None;
+        println!("No mirror window: {error:#}. The participant is not affected.");
+    }
+}
+
+impl ApplicationHandler for Mirror {
+    fn resumed(&mut self, events: &ActiveEventLoop) {
+        if self.stage.is_some() || self.is_given_up {
+            return;
+        }
+        match self.open(events) {
+            Ok(stage) => self.stage = Some(stage),
+            Err(error) => self.give_up(&error),
+        }
+    }
+
+    fn window_event(&mut self, _: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        match event {
+            WindowEvent::RedrawRequested => {
+                if let Err(error) = self.draw() {
+                    self.give_up(&error);
+                }
+            }
+            WindowEvent::CloseRequested => self.shared.stop.store(true, Ordering::Relaxed),
+            WindowEvent::Resized(size) => {
+                if let Some(stage) = &mut self.stage {
+                    stage.target.resize(size.width, size.height);
+                }
+            }
+            WindowEvent::KeyboardInput { event, .. } => {
+                let key = event.physical_key;
+                let is_down = event.state.is_pressed();
+                match key {
+                    PhysicalKey::Code(KeyCode::Digit1 | KeyCode::Numpad1) => {
+                        self.shared.hold_key(Button::Red, is_down);
+                    }
+                    PhysicalKey::Code(KeyCode::Digit2 | KeyCode::Numpad2) => {
+                        self.shared.hold_key(Button::Blue, is_down);
+                    }
+                    PhysicalKey::Code(KeyCode::Escape) if is_down => {
+                        self.shared.stop.store(true, Ordering::Relaxed);
+                    }
+                    _ => {}
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn about_to_wait(&mut self, events: &ActiveEventLoop) {
+        self.outcome = self.watch.look(Duration::ZERO);
+        if self.outcome.is_some() {
+            events.exit();
+            return;
+        }
+        let now = Instant::now();
+        if now >= self.due {
+            self.due = now + PERIOD;
+            if let Some(stage) = &self.stage {
+                stage.target.window().request_redraw();
+            }
+        }
+        events.set_control_flow(ControlFlow::WaitUntil(self.due));
+    }
+}
