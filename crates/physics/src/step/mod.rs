@@ -13,7 +13,6 @@ mod drag;
 mod events;
 mod grip;
 mod islands;
-mod leap;
 mod patch;
 mod queue;
 mod rest;

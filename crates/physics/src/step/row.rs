@@ -346,56 +346,22 @@ impl Row {
     ///
     /// A `stride` above 1 and below 2 goes beyond, which brings slow passes forward.
     pub fn press(&mut self, all: &mut [Mover], stride: f64) -> f64 {
-        let step = stride * self.excess(all) / self.stiffness;
+        let n = self.touch.normal;
+        let approach = self.approach_now(all);
+        let step = stride * (approach - self.allowed) / self.stiffness;
         let pressed = (self.pressed + step).max(0.0);
         let change = pressed - self.pressed;
         self.pressed = pressed;
         if change == 0.0 {
             return 0.0;
         }
-        self.give(change, all);
-        (change * self.stiffness).abs()
-    }
-
-    /// Approach beyond the allowed one [m/s].
-    pub fn excess(&self, all: &[Mover]) -> f64 {
-        self.approach_now(all) - self.allowed
-    }
-
-    /// Changes the normal impulse [N s]; it stays one that presses.
-    pub fn press_by(&mut self, change: f64, all: &mut [Mover]) {
-        self.pressed = (self.pressed + change).max(0.0);
-        self.give(change, all);
-    }
-
-    /// How much slower this contact closes for each N s that `other` presses [1/kg].
-    pub fn coupling(&self, other: &Row, all: &[Mover]) -> f64 {
-        let along = self.touch.normal.dot(other.touch.normal);
-        let mut sum = 0.0;
-        for (mover, lever, side) in [
-            (self.movers.0, self.levers.0, 1.0),
-            (self.movers.1, self.levers.1, -1.0),
-        ] {
-            for (same, turn, other_side) in [
-                (other.movers.0, other.turns.0, side),
-                (other.movers.1, other.turns.1, -side),
-            ] {
-                if mover == same {
-                    sum += other_side * (along * all[mover].inv_mass + lever.dot(turn));
-                }
-            }
-        }
-        sum
-    }
-
-    fn give(&self, change: f64, all: &mut [Mover]) {
-        let n = self.touch.normal;
         let a = &mut all[self.movers.0];
         a.linear -= n * (change * a.inv_mass);
         a.angular -= self.turns.0 * change;
         let b = &mut all[self.movers.1];
         b.linear += n * (change * b.inv_mass);
         b.angular += self.turns.1 * change;
+        (change * self.stiffness).abs()
     }
 
     /// One pass of friction in the cone: the tangential impulse that stops the slip, or as much as the cone holds.

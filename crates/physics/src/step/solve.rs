@@ -8,7 +8,6 @@
 use glam::DVec3;
 
 use super::grip::Friction;
-use super::leap::leap;
 use super::row::{Mover, Row};
 use super::scratch::Carry;
 use super::touch::Touch;
@@ -154,19 +153,11 @@ fn brake_group(rows: &mut [Row], all: &mut [Mover], bodies: &[Body], halves: &Ha
 /// Passes over all rows until they come to terms; returns how many rows that took, and what is missing [m/s].
 ///
 /// What is still missing follows from how fast the changes fall from pass to pass: under a heavy body on a light one they
-/// are small and fall slowly, and add up to much. Where there are only normals between passes all that press are answered
-/// at once, and then again after twice as many; what overlaps a hand may have no answer, and a base has more than a normal.
+/// are small and fall slowly, and add up to much.
 fn settle(rows: &mut [Row], all: &mut [Mover], bodies: &[Body], halves: &Halves) -> (u32, f64) {
     let grips = halves.is_cone && halves.is_rough;
     let (mut last, mut ratio, mut missing) = (f64::INFINITY, 0.0, 0.0);
-    let leaps = !halves.is_cone
-        && !rows
-            .iter()
-            .any(|row| row.touch.base.is_some() || row.is_driven(all));
     for pass in 0..halves.passes {
-        if leaps && (pass == 0 || pass.is_power_of_two()) {
-            leap(rows, all);
-        }
         let stride = if pass >= LONG && halves.passes > PASSES {
             STRIDE
         } else {
