@@ -5,7 +5,7 @@
 #   scripts/xr-runtime.sh [FOLDER]        default: ~/.cache/bowling/xr-runtime
 #
 # Prints the folder as its last line. A second call only checks what is there. Exit 3: this machine cannot have it (no
-# Debian or Ubuntu on x86-64); the tests then name themselves as skipped, except in continuous integration.
+# Debian on x86-64); the tests then name themselves as skipped, except in continuous integration.
 set -euo pipefail
 
 # Debian 12 has no Monado, and a C library that is too old for trixie's: everything comes from trixie, its dynamic loader too.
@@ -18,7 +18,7 @@ cannot() {
 }
 
 if [ "$(uname -s)-$(uname -m)" != Linux-x86_64 ] || ! command -v apt-get >/dev/null; then
-  cannot "the OpenXR runtime for tests is packed for Debian and Ubuntu on x86-64 alone"
+  cannot "the OpenXR runtime for tests is packed for Debian on x86-64 alone"
 fi
 
 folder=${1:-${XDG_CACHE_HOME:-$HOME/.cache}/bowling/xr-runtime}
@@ -33,13 +33,13 @@ is_whole() {
 
 # What the tests start or load; a mirror that lacks one of them must fail here and not in a test.
 parts() {
-  printf '%s\n' root/usr/bin/monado-service root/usr/bin/monado-ctl
+  printf '%s\n' ld lavapipe.json monado.json root/usr/bin/monado-service root/usr/bin/monado-ctl
   local library
   for library in ld-linux-x86-64.so.2 libc.so.6 libopenxr_monado.so libopenxr_loader.so.1 libvulkan.so.1 libvulkan_lvp.so \
     libVkLayer_khronos_validation.so; do
     printf '%s\n' "root/usr/lib/x86_64-linux-gnu/$library"
   done
-  (cd "$folder" && find root/usr/lib root/usr/share/openxr -name '*core_validation*' -type f)
+  (cd "$folder" && find api_layers root/usr/lib root/usr/share/openxr -name '*core_validation*' -type f)
 }
 
 unpack() {
@@ -50,7 +50,7 @@ unpack() {
   fi
   # The mirror that this machine's own apt uses, with the keys that it trusts.
   local mirror
-  mirror=$(apt-get indextargets --format '$(SITE)' 2>/dev/null | grep -m1 '/debian/*$') \
+  mirror=$(apt-get indextargets --format '$(SITE)' 2>/dev/null | awk '/\/debian\/*$/ && !seen { print; seen = 1 }') && [ -n "$mirror" ] \
     || cannot "apt of this machine knows no Debian mirror to take the OpenXR runtime from"
   echo "xr-runtime: unpacking Monado and software Vulkan of Debian $suite (about half a minute, 300 MB) ..." >&2
   rm -rf "$root" "$folder/manifest"

@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 use game::{Button, Config};
-use renderer::headset::{Focus, HeadsetError, HeadsetSession, HeadsetSettings, Note};
+use renderer::headset::{Focus, HeadsetError, HeadsetSession, HeadsetSettings, Note, Readings};
 use renderer::{Renderer, RendererSettings, View};
 use serde_json::json;
 
@@ -31,6 +31,8 @@ use watch::Watch;
 
 /// Time between two attempts to connect anew.
 const RETRY: Duration = Duration::from_millis(500);
+/// Longest wait for a runtime that was asked to end the session.
+const LONGEST_END: Duration = Duration::from_secs(3);
 /// How often the runtime is asked whether it wants frames, while it wants none.
 const IDLE: Duration = Duration::from_millis(10);
 
@@ -43,7 +45,7 @@ struct Shared {
     began: Instant,
     /// What the left eye saw last, world frame.
     left_eye: Mutex<Option<View>>,
-    /// The experimenter's keys for Red and Blue: whether they are down.
+    /// The experimenter's keys for Red and Blue: pressed since the last frame.
     keys: [AtomicBool; 2],
     stop: Arc<AtomicBool>,
 }
@@ -60,13 +62,13 @@ impl Shared {
         self.began.elapsed().saturating_sub(beat)
     }
 
-    /// The experimenter holds a key down, or lets it go.
-    fn hold_key(&self, button: Button, is_down: bool) {
-        self.keys[button as usize].store(is_down, Ordering::Relaxed);
+    /// The experimenter presses a key; the next frame takes it.
+    fn press(&self, button: Button) {
+        self.keys[button as usize].store(true, Ordering::Relaxed);
     }
 
-    fn key(&self, button: Button) -> bool {
-        self.keys[button as usize].load(Ordering::Relaxed)
+    fn take_press(&self, button: Button) -> bool {
+        self.keys[button as usize].swap(false, Ordering::Relaxed)
     }
 
     fn left_eye(&self) -> Option<View> {
@@ -124,6 +126,9 @@ pub fn run(setup: Setup, root: &Path, wanted: Wanted, refresh_rate_hz: Option<f3
         root: root.to_owned(),
         participant: Participant::new(config.physics.step_hz),
         times: FrameTimes::default(),
+        is_paused: false,
+        menu_was_down: false,
+        refusal: String::new(),
         config: config.clone(),
         settings,
     };
@@ -200,6 +205,12 @@ struct Player {
     settings: HeadsetSettings,
     participant: Participant,
     times: FrameTimes,
+    /// The participant paused by the menu button.
+    is_paused: bool,
+    /// Whether a menu button was down in the last frame.
+    menu_was_down: bool,
+    /// Why the last attempt to connect failed.
+    refusal: String,
 }
 
 impl Player {
@@ -214,10 +225,12 @@ impl Player {
             let ended = self.play_on(&mut connected);
             match ended {
                 Ok(()) => return self.shared.note(self.times.summary()),
-                Err(error) if is_loss(&error) => {
+                // Whatever the runtime answers in the middle of a game: it is asked anew before anything is given up.
+                Err(error) if error.is::<HeadsetError>() => {
                     println!("{error:#}. The game waits for the headset; Ctrl-C ends and saves.");
                     self.shared.note(json!({ "lost": format!("{error:#}") }))?;
                     self.shared.with(Session::flush)?;
+                    self.times.pause();
                 }
                 Err(error) => return Err(error),
             }
@@ -229,9 +242,20 @@ impl Player {
     fn reconnect(&mut self) -> Result<Option<Stage>> {
         std::thread::sleep(RETRY);
         self.shared.beat();
-        let Ok(stage) = Stage::open(self.settings, &self.root, &self.config) else {
-            return Ok(None);
+        let stage = match Stage::open(self.settings, &self.root, &self.config) {
+            Ok(stage) => stage,
+            Err(error) if error.is::<HeadsetError>() => {
+                let refusal = format!("{error:#}");
+                if refusal != self.refusal {
+                    println!("Not yet: {refusal}.");
+                    self.shared.note(json!({ "refused": refusal }))?;
+                    self.refusal = refusal;
+                }
+                return Ok(None);
+            }
+            Err(error) => return Err(error),
         };
+        self.refusal.clear();
         println!("Connected to the headset again: the game goes on.");
         self.shared
             .note(json!({ "reconnected": stage.headset.headset().runtime }))?;
@@ -240,7 +264,7 @@ impl Player {
 
     /// Plays on one connection until the runtime or somebody ends it.
     fn play_on(&mut self, stage: &mut Stage) -> Result<()> {
-        let mut has_asked = false;
+        let mut asked: Option<Instant> = None;
         loop {
             self.shared.beat();
             for note in stage.headset.poll()? {
@@ -252,26 +276,43 @@ impl Player {
                     return Ok(());
                 }
             }
-            if self.shared.must_stop() && !has_asked {
-                has_asked = true;
-                if stage.headset.request_exit().is_err() {
-                    // Not running, so there is nothing to end.
-                    return Ok(());
+            match asked {
+                // Not running, so there is nothing to end; or a runtime that never comes to its end.
+                None if self.shared.must_stop() => {
+                    if stage.headset.request_exit().is_err() {
+                        return Ok(());
+                    }
+                    asked = Some(Instant::now());
                 }
+                Some(since) if since.elapsed() > LONGEST_END => return Ok(()),
+                _ => {}
             }
             if stage.headset.is_running() {
                 self.frame(stage)?;
             } else {
+                self.times.pause();
                 std::thread::sleep(IDLE);
             }
         }
+    }
+
+    /// The menu button pauses, and goes on.
+    fn hear_menu(&mut self, readings: &Readings) -> Result<()> {
+        let is_down = readings.hands.iter().any(|hand| hand.menu);
+        if is_down && !self.menu_was_down {
+            self.is_paused = !self.is_paused;
+            self.shared.note(json!({ "paused": self.is_paused }))?;
+        }
+        self.menu_was_down = is_down;
+        Ok(())
     }
 
     fn frame(&mut self, stage: &mut Stage) -> Result<()> {
         let headset = &mut stage.headset;
         let frame = headset.wait()?;
         let readings = headset.read(&frame)?;
-        let is_here = headset.focus() == Focus::Focused;
+        self.hear_menu(&readings)?;
+        let is_here = headset.focus() == Focus::Focused && !self.is_paused;
         let (participant, keys) = (&mut self.participant, &self.shared);
         let played = self.shared.with(|session| {
             let mut input = if is_here {
@@ -281,12 +322,13 @@ impl Player {
             } else {
                 participant.pause(&readings)
             };
-            input.press_red |= keys.key(Button::Red);
-            input.press_blue |= keys.key(Button::Blue);
+            input.press_red |= keys.take_press(Button::Red);
+            input.press_blue |= keys.take_press(Button::Blue);
             let held = session.game().held();
             session.frame(input)?;
             let game = session.game();
-            let scene = convert::scene(game.visible().iter(), &stage.stock, game.held().is_some());
+            let visible = game.visible_at(participant.share());
+            let scene = convert::scene(visible.iter(), &stage.stock, game.held().is_some());
             Ok((
                 scene,
                 game.world_from_tracking(),
@@ -321,12 +363,6 @@ impl Player {
             .with(|session| session.device(line).and_then(|()| session.flush()))
             .map(|_| ())
     }
-}
-
-fn is_loss(error: &anyhow::Error) -> bool {
-    error
-        .downcast_ref::<HeadsetError>()
-        .is_some_and(HeadsetError::is_loss)
 }
 
 /// A note as the journal keeps it.

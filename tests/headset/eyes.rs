@@ -34,6 +34,7 @@ fn run_inside(service: &Service, name: &str, environment: &[(&str, &Path)]) -> S
     let said = [output.stdout, output.stderr].concat();
     let said = String::from_utf8_lossy(&said).into_owned();
     assert!(output.status.success(), "{said}");
+    assert!(said.contains("1 passed"), "no such test inside: {said}");
     said
 }
 

@@ -39,6 +39,8 @@ pub struct Room {
     pub said: Vec<Value>,
     /// The last input that the game consumed.
     pub input: Input,
+    /// How long before its frame's instant the trigger last changed, at the last release [s].
+    pub released_age: Option<f64>,
 }
 
 impl Room {
@@ -60,6 +62,7 @@ impl Room {
             packet,
             said: Vec::new(),
             input: Input::default(),
+            released_age: None,
         };
         room.send();
         room.wait_until("the focus", |room| room.has_said("focus", "focused"));
@@ -102,6 +105,9 @@ impl Room {
             limit = Duration::ZERO;
             let line: Value = serde_json::from_str(&line).expect("a line of JSON");
             if line["input"].is_null() {
+                if line["event"]["event"] == "released" {
+                    self.released_age = self.input.trigger_change.map(|change| change.age_s);
+                }
                 self.said.push(line);
                 continue;
             }

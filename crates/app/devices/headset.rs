@@ -2,22 +2,29 @@
 
 use game::{Input, Tracked, TriggerChange, Velocity};
 use physics::Pose;
-use renderer::headset::{HandReading, Readings, Side, TrackedPose};
+use renderer::headset::{Change, HandReading, Readings, Side, TrackedPose};
 
 /// A hand that closes further than this takes over from one that is open.
 const TAKES_OVER: f64 = 0.5;
 /// Longest time that one frame makes up for [s]: after a longer stall the alley goes on from where it was.
 const LONGEST_CATCH_UP_S: f64 = 0.25;
 
+/// Times of display jitter by less than this share of a step, which must not cost a step.
+const JITTER: f64 = 0.02;
+
 /// The participant in a headset.
 #[derive(Debug)]
 pub struct Participant {
     step_hz: f64,
     throwing: Side,
+    /// Trigger and squeeze of both hands in the last frame.
+    before: [[f64; 2]; 2],
+    /// Hands whose buttons were down when hands changed roles: they mean nothing until all are up.
+    ignored: [bool; 2],
     /// Time of display of the last frame that was played [ns].
     played_ns: Option<i64>,
-    /// Steps that the frames so far asked for and did not get because steps are whole, from -0.5 to 0.5.
-    owed: f64,
+    /// Steps by which the alley is ahead of the display, because steps are whole, from 0 to 1.
+    ahead: f64,
 }
 
 impl Participant {
@@ -26,14 +33,21 @@ impl Participant {
         Self {
             step_hz,
             throwing: Side::Right,
+            before: [[0.0; 2]; 2],
+            ignored: [false; 2],
             played_ns: None,
-            owed: 0.0,
+            ahead: 0.0,
         }
     }
 
     /// The hand that throws.
     pub fn throwing(&self) -> Side {
         self.throwing
+    }
+
+    /// The share of the last step at which the frame is seen, from 0 to 1.
+    pub fn share(&self) -> f64 {
+        1.0 - self.ahead
     }
 
     /// What a frame without the participant's attention is: the head moves, time stands still, the hand is gone.
@@ -58,31 +72,56 @@ impl Participant {
         let is_free = !is_holding && closure(&hands[self.throwing as usize]) < TAKES_OVER;
         if is_free && closure(&hands[other as usize]) >= TAKES_OVER {
             self.throwing = other;
+            self.ignored = [true; 2];
+            // One frame without a hand: it has not moved from one side to the other, and the old one's grip is over.
+            return Input {
+                head: readings.head.map(tracked),
+                steps: self.due(display_ns, period_s),
+                ..Input::default()
+            };
         }
+        for (ignored, hand) in self.ignored.iter_mut().zip(hands) {
+            *ignored &= hand.forward || hand.back || hand.red || hand.blue;
+        }
+        let changes = self.changes(readings);
         let hand = &hands[self.throwing as usize];
         let choosing = &hands[self.throwing.other() as usize];
+        let [walks, chooses] =
+            [self.throwing, self.throwing.other()].map(|side| !self.ignored[side as usize]);
         Input {
             head: readings.head.map(tracked),
             hand: hand.grip.map(tracked),
             trigger: closure(hand),
-            walk_forward: hand.forward,
-            walk_back: hand.back,
-            press_red: choosing.red,
-            press_blue: choosing.blue,
+            walk_forward: walks && hand.forward,
+            walk_back: walks && hand.back,
+            press_red: chooses && choosing.red,
+            press_blue: chooses && choosing.blue,
             steps: self.due(display_ns, period_s),
-            trigger_change: change(hand, display_ns),
+            trigger_change: changes[self.throwing as usize]
+                .and_then(|change| aged(change, display_ns)),
         }
     }
 
-    /// Whole steps up to the time of display.
+    /// For each hand the change of what held it closed: noise of the other of trigger and squeeze does not count.
+    fn changes(&mut self, readings: &Readings) -> [Option<Change>; 2] {
+        let mut changes = [None; 2];
+        for (side, hand) in readings.hands.iter().enumerate() {
+            let [trigger, squeeze] = self.before[side];
+            changes[side] = hand.changes[usize::from(squeeze > trigger)];
+            self.before[side] = [hand.trigger, hand.squeeze];
+        }
+        changes
+    }
+
+    /// Whole steps up to the time of display, or less than one beyond it.
     fn due(&mut self, display_ns: i64, period_s: f64) -> u32 {
         let elapsed = self
             .played_ns
             .map_or(period_s, |last| (display_ns - last) as f64 * 1e-9);
         self.played_ns = Some(display_ns);
-        let wanted = elapsed.clamp(0.0, LONGEST_CATCH_UP_S) * self.step_hz + self.owed;
-        let steps = wanted.round().max(0.0);
-        self.owed = (wanted - steps).clamp(-0.5, 0.5);
+        let wanted = elapsed.clamp(0.0, LONGEST_CATCH_UP_S) * self.step_hz - self.ahead;
+        let steps = (wanted - JITTER).ceil().max(0.0);
+        self.ahead = (steps - wanted).clamp(0.0, 1.0);
         steps as u32
     }
 }
@@ -92,8 +131,7 @@ fn closure(hand: &HandReading) -> f64 {
     hand.trigger.max(hand.squeeze).clamp(0.0, 1.0)
 }
 
-fn change(hand: &HandReading, display_ns: i64) -> Option<TriggerChange> {
-    let change = hand.change?;
+fn aged(change: Change, display_ns: i64) -> Option<TriggerChange> {
     Some(TriggerChange {
         age_s: (display_ns - change.time_ns) as f64 * 1e-9,
         hand: tracked(change.grip?),
@@ -117,7 +155,6 @@ fn tracked(pose: TrackedPose) -> Tracked {
 mod tests {
     use super::*;
     use glam::{DQuat, DVec3};
-    use renderer::headset::Change;
 
     fn grip(x: f64) -> Option<TrackedPose> {
         Some(TrackedPose {
@@ -141,13 +178,19 @@ mod tests {
         let mut participant = Participant::new(720.0);
         let mut x = |left, right, holding| {
             let input = participant.input(&readings(left, right), 0, 0.01, holding);
-            input.hand.expect("both hands are tracked").pose.position.x
+            input.hand.map(|hand| hand.pose.position.x)
         };
-        assert_eq!(x(0.0, 0.0, false), 0.3);
-        assert_eq!(x(0.9, 0.0, false), -0.3);
-        assert_eq!(x(0.9, 0.9, true), -0.3, "the ball is in the left hand");
-        assert_eq!(x(0.0, 0.9, true), -0.3, "until it is let go");
-        assert_eq!(x(0.0, 0.9, false), 0.3);
+        assert_eq!(x(0.0, 0.0, false), Some(0.3));
+        assert_eq!(x(0.9, 0.0, false), None, "no hand moves from right to left");
+        assert_eq!(x(0.9, 0.0, false), Some(-0.3));
+        assert_eq!(
+            x(0.9, 0.9, true),
+            Some(-0.3),
+            "the ball is in the left hand"
+        );
+        assert_eq!(x(0.0, 0.9, true), Some(-0.3), "until it is let go");
+        assert_eq!(x(0.0, 0.9, false), None);
+        assert_eq!(x(0.0, 0.9, false), Some(0.3));
     }
 
     #[test]
@@ -162,6 +205,21 @@ mod tests {
         assert!(input.walk_forward && input.press_red && !input.press_blue);
         both.hands[0].red = false;
         assert!(!participant.input(&both, 0, 0.01, false).press_red);
+    }
+
+    /// A thumb that walks while the other hand takes over must not choose a game.
+    #[test]
+    fn buttons_that_are_down_when_hands_change_roles_mean_nothing() {
+        let mut participant = Participant::new(720.0);
+        let mut both = readings(0.9, 0.0);
+        (both.hands[1].forward, both.hands[1].blue) = (true, true);
+        for _ in 0..3 {
+            assert!(!participant.input(&both, 0, 0.01, false).press_blue);
+        }
+        (both.hands[1].forward, both.hands[1].blue) = (false, false);
+        participant.input(&both, 0, 0.01, false);
+        (both.hands[1].forward, both.hands[1].blue) = (true, true);
+        assert!(participant.input(&both, 0, 0.01, false).press_blue);
     }
 
     /// 75 Hz does not divide 720: the steps of any stretch of frames are those of its time, to one.
@@ -200,7 +258,7 @@ mod tests {
     fn a_change_is_aged_from_the_time_of_display() {
         let mut participant = Participant::new(720.0);
         let mut with_change = readings(0.0, 0.0);
-        with_change.hands[1].change = Some(Change {
+        with_change.hands[1].changes[0] = Some(Change {
             time_ns: 1_000_000_000,
             grip: grip(0.1),
         });

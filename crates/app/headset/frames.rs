@@ -44,6 +44,11 @@ impl FrameTimes {
         }
     }
 
+    /// What passes until the next frame was not missed: the runtime wanted none.
+    pub fn pause(&mut self) {
+        self.last_display_ns = None;
+    }
+
     /// The frame's line for the journal.
     pub fn finish(&mut self, timing: Timing) -> Value {
         let taken = timing.woken.elapsed().as_secs_f64() * 1e3;

@@ -3,12 +3,13 @@
 //! It has a device of its own and takes the game's lock only to copy what is seen, so that no screen slows the headset. Without a
 //! display there is none, and the session is the same.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Result, anyhow};
 use game::{Button, Config};
 use renderer::{BackendChoice, Renderer, RendererSettings, WindowTarget};
 use winit::application::ApplicationHandler;
@@ -43,13 +44,18 @@ pub fn stay(watch: Watch, shared: Arc<Shared>, root: &Path, config: &Config) -> 
         due: Instant::now(),
         outcome: None,
     };
-    events
-        .run_app(&mut mirror)
-        .context("the window system ended the mirror")?;
+    // A fault of the window system or its driver ends the mirror, and must not end the participant's game.
+    let ended = catch_unwind(AssertUnwindSafe(|| events.run_app(&mut mirror)));
     match mirror.outcome {
         Some(outcome) => outcome,
-        // The window system ended its loop; the participant plays on.
-        None => mirror.watch.wait(),
+        None => {
+            let why = match ended {
+                Ok(Err(error)) => error.to_string(),
+                _ => "the window system ended it".to_owned(),
+            };
+            println!("No mirror window any more: {why}. The participant is not affected.");
+            mirror.watch.wait()
+        }
     }
 }
 
@@ -143,15 +149,17 @@ impl ApplicationHandler for Mirror {
             }
             WindowEvent::KeyboardInput { event, .. } => {
                 let key = event.physical_key;
-                let is_down = event.state.is_pressed();
+                if !event.state.is_pressed() || event.repeat {
+                    return;
+                }
                 match key {
                     PhysicalKey::Code(KeyCode::Digit1 | KeyCode::Numpad1) => {
-                        self.shared.hold_key(Button::Red, is_down);
+                        self.shared.press(Button::Red);
                     }
                     PhysicalKey::Code(KeyCode::Digit2 | KeyCode::Numpad2) => {
-                        self.shared.hold_key(Button::Blue, is_down);
+                        self.shared.press(Button::Blue);
                     }
-                    PhysicalKey::Code(KeyCode::Escape) if is_down => {
+                    PhysicalKey::Code(KeyCode::Escape) => {
                         self.shared.stop.store(true, Ordering::Relaxed);
                     }
                     _ => {}

@@ -28,7 +28,6 @@ fn felt(kind: &EventKind, held: Option<Model>) -> Option<Pulse> {
         EventKind::Touched { .. } => pulse(0.2, 0.015),
         EventKind::Grabbed { .. } => pulse(0.6, 0.04),
         EventKind::Released(_) => pulse(0.4, 0.025),
-        EventKind::Pressed { .. } => pulse(0.8, 0.03),
         EventKind::Impact { a, b, impulse, .. } => {
             let is_mine = |model: &Model| *model == Model::Hand || Some(*model) == held;
             let share = (impulse / STRONGEST_IMPULSE).min(1.0);

@@ -44,16 +44,21 @@ impl Game {
 
     /// Closes or opens the hand. Without a tracked hand the grip stays as it was, for as long as a grip outlasts tracking.
     pub(crate) fn grip(&mut self, input: &Input, let_go: Option<Moment>) {
+        let opens = input.trigger <= self.room.config.hand.trigger_open;
         let Some(hand) = self.hand.now else {
             self.hand.candidate = None;
-            self.drop_if_lost();
+            match let_go {
+                // The device knows where the hand was when it opened, if not where it is now.
+                Some(moment) => self.release(moment),
+                None => self.drop_if_lost(),
+            }
+            if self.hand.held.is_none() && opens {
+                self.hand.is_closed = false;
+            }
             return;
         };
         let config = &self.room.config.hand;
-        let (closes, opens) = (
-            input.trigger >= config.trigger_close,
-            input.trigger <= config.trigger_open,
-        );
+        let closes = input.trigger >= config.trigger_close;
         if self.hand.held.is_none() {
             self.hand.candidate = nearest(&self.room, hand);
         }
@@ -86,7 +91,7 @@ impl Game {
         let Some(held) = self.hand.held.take() else {
             return;
         };
-        self.hand.is_closed = false;
+        // Still closed: it must open before it takes anything again.
         let id = self.room.id(held.entity);
         self.room.world.set_motion(id, Motion::Dynamic);
         self.room.world.set_velocity(id, DVec3::ZERO, DVec3::ZERO);
@@ -146,6 +151,9 @@ impl Game {
         self.room.world.set_velocity(id, used.linear, used.angular);
         self.fly(held.entity, used, moment.lead_s);
         self.hand.let_go = Some(held.entity);
+        // At once, also between two steps: the ball leaves through the fingers.
+        let hand = self.room.id(self.room.hand);
+        self.room.world.set_collides(hand, false);
         let is_foul = self.head_is_beyond();
         self.note_on_ball(held.entity, Some(is_foul));
         self.record(EventKind::Released(Release {

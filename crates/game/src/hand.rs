@@ -7,7 +7,7 @@ use crate::components::Held;
 use crate::event::{EventKind, TrackedPart};
 use crate::input::{Input, Tracked, Velocity};
 use crate::release::PoseHistory;
-use crate::room::Room;
+use crate::room::{Room, between};
 use crate::visible::Model;
 use crate::{Game, grab};
 
@@ -209,12 +209,4 @@ pub(crate) fn surface_distance(room: &Room, entity: hecs::Entity, hand: Pose) ->
         .map(gap)
         .fold(f64::INFINITY, f64::min)
         + radius
-}
-
-/// A pose between two.
-fn between(before: Pose, now: Pose, share: f64) -> Pose {
-    Pose::new(
-        before.position.lerp(now.position, share),
-        before.rotation.lerp(now.rotation, share),
-    )
 }

@@ -69,8 +69,8 @@ pub struct TriggerChange {
 }
 
 impl TriggerChange {
-    /// Longest age that is believed [s]: runtimes keep a shorter history.
-    pub const LONGEST_AGE_S: f64 = 0.25;
+    /// Longest age that is believed [s]: runtimes keep a shorter history, and what flies so long flies through things.
+    pub const LONGEST_AGE_S: f64 = 0.2;
 
     /// True when the numbers can be used.
     pub fn is_usable(&self) -> bool {

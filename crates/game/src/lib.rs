@@ -200,6 +200,9 @@ impl Game {
             self.clear_pit();
             self.run_pinsetter();
             self.return_strays();
+            if step == input.steps {
+                self.room.keep_poses();
+            }
             self.room.world.step_watched(watch);
             self.steps += 1;
             self.notice_impacts();

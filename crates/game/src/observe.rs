@@ -173,6 +173,12 @@ impl Game {
 
     /// Everything that can be seen now.
     pub fn visible(&self) -> Vec<Visible> {
+        self.visible_at(1.0)
+    }
+
+    /// Everything that can be seen at a share of the last step, from 0 to 1: a display's instants lie between steps. What a
+    /// hand holds is where the hand is.
+    pub fn visible_at(&self, share: f64) -> Vec<Visible> {
         let mut visible = Vec::new();
         for (entity, shown, body, painted) in
             &mut self
@@ -181,7 +187,15 @@ impl Game {
                 .query::<(hecs::Entity, &Shown, Option<&Physical>, Option<&Painted>)>()
         {
             let pose = match (body, painted) {
-                (Some(Physical(id)), _) => self.room.world.body(*id).pose(),
+                (Some(Physical(id)), _) => {
+                    let now = self.room.world.body(*id).pose();
+                    let is_held = self.hand.held.is_some_and(|held| held.entity == entity);
+                    if is_held || share >= 1.0 {
+                        now
+                    } else {
+                        self.room.pose_at(entity, now, share)
+                    }
+                }
                 (None, Some(Painted(pose))) => *pose,
                 (None, None) => continue,
             };

@@ -39,6 +39,19 @@ pub(crate) struct Room {
     owners: BTreeMap<BodyId, Entity>,
     /// Boxes that never move, for keeping a held thing out of them.
     pub obstacles: Vec<(Pose, DVec3, Shape)>,
+    /// Pins and balls before the last step, for pictures of an instant within it.
+    earlier: Vec<(Entity, Pose)>,
+}
+
+/// Farther than this in one step nothing rolls or flies: it was put somewhere [m].
+const PUT: f64 = 0.1;
+
+/// A pose between two.
+pub(crate) fn between(before: Pose, now: Pose, share: f64) -> Pose {
+    Pose::new(
+        before.position.lerp(now.position, share),
+        before.rotation.lerp(now.rotation, share),
+    )
 }
 
 impl Room {
@@ -71,7 +84,28 @@ impl Room {
             bar,
             owners,
             obstacles,
+            earlier: Vec::new(),
         })
+    }
+
+    /// Keeps the poses of pins and balls; the step that follows is the one whose inside pictures may show.
+    pub fn keep_poses(&mut self) {
+        let mut earlier = std::mem::take(&mut self.earlier);
+        earlier.clear();
+        let things = self.pins.iter().chain(&self.balls);
+        earlier.extend(things.map(|entity| (*entity, self.body(*entity).pose())));
+        self.earlier = earlier;
+    }
+
+    /// Where a body is at a share of the last step, from 0 to 1.
+    pub fn pose_at(&self, entity: Entity, now: Pose, share: f64) -> Pose {
+        let earlier = self.earlier.iter().find(|(thing, _)| *thing == entity);
+        match earlier {
+            Some((_, before)) if before.position.distance(now.position) < PUT => {
+                between(*before, now, share)
+            }
+            _ => now,
+        }
     }
 
     /// A component of an entity that has it.

@@ -56,6 +56,30 @@ fn the_ball_flies_from_the_instant_at_which_the_trigger_opened() {
     }
 }
 
+/// A picture of an instant within the last step shows a flying ball between its two poses.
+#[test]
+fn a_picture_within_a_step_shows_a_pose_between() {
+    let mut player = Player::new(conditions(&[]), 1);
+    player.take_ball();
+    player.hand_velocity = Some(Velocity {
+        linear: DVec3::new(0.0, 1.0, -5.0),
+        angular: DVec3::ZERO,
+    });
+    player.trigger(0.0);
+    player.hand_velocity = None;
+    player.frame();
+    let ball = |share| {
+        let seen = player.game.visible_at(share);
+        let ball = seen.iter().find(|seen| seen.model == game::Model::Ball(0));
+        ball.expect("it is seen").pose.position
+    };
+    assert_eq!(ball(1.0), player.game.observe().balls[0].position);
+    // A step of 1/720 s at 5 m/s.
+    let way = ball(1.0) - ball(0.0);
+    assert!((way.z + 5.0 / 720.0).abs() < 1e-6, "{way}");
+    assert!(ball(0.25).distance(ball(0.0).lerp(ball(1.0), 0.25)) < 1e-12);
+}
+
 /// An age that no runtime reports is not believed: the ball then leaves at the end of the frame.
 #[test]
 fn an_impossible_age_counts_as_none() {

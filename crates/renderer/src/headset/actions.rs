@@ -37,7 +37,7 @@ impl Side {
     }
 }
 
-/// The last change of a hand's trigger or squeeze.
+/// The last change of a hand's trigger or squeeze: of a value that moves through several readings, its last.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Change {
     /// When it happened, on the runtime's clock [ns].
@@ -55,8 +55,8 @@ pub struct HandReading {
     pub trigger: f64,
     /// Squeeze, from 0 (open) to 1 (closed).
     pub squeeze: f64,
-    /// The last change of either, if there was one since the reading before.
-    pub change: Option<Change>,
+    /// The last change of the trigger and of the squeeze, if there was one since the reading before.
+    pub changes: [Option<Change>; 2],
     /// Lower thumb button, or the upper half of a trackpad.
     pub forward: bool,
     /// Upper thumb button, or the lower half of a trackpad.
@@ -203,15 +203,14 @@ impl Actions {
         let grip = &self.grips[side as usize];
         let trigger = self.trigger.state(session, hand)?;
         let squeeze = self.squeeze.state(session, hand)?;
-        let changed_at = [&trigger, &squeeze]
-            .into_iter()
-            .filter(|state| state.is_active && state.changed_since_last_sync)
-            .map(|state| state.last_change_time)
-            .max_by_key(|time| time.as_nanos());
-        let change = changed_at.map(|at| {
-            let time_ns = at.as_nanos();
-            space::locate(grip, base, at).map(|grip| Change { time_ns, grip })
-        });
+        let changed = |state: &xr::ActionState<f32>| -> Option<Change> {
+            let at = state.last_change_time;
+            (state.is_active && state.changed_since_last_sync).then(|| Change {
+                time_ns: at.as_nanos(),
+                // A time that the runtime no longer knows has no place; the game then takes the frame's own.
+                grip: space::locate(grip, base, at).ok().flatten(),
+            })
+        };
         let is_down = |action: &xr::Action<bool>| -> Result<bool, HeadsetError> {
             let state = action.state(session, hand)?;
             Ok(state.is_active && state.current_state)
@@ -226,7 +225,7 @@ impl Actions {
             grip: space::locate(grip, base, time)?,
             trigger: trigger.current_state.into(),
             squeeze: squeeze.current_state.into(),
-            change: change.transpose()?,
+            changes: [changed(&trigger), changed(&squeeze)],
             forward: is_down(&self.forward)? || upper,
             back: is_down(&self.back)? || lower,
             red: !locked && (is_down(&self.red)? || upper),

@@ -29,6 +29,14 @@ pub enum HeadsetError {
         /// What it does not offer.
         what: &'static str,
     },
+    /// The display has no such refresh rate.
+    #[error("the headset has no refresh rate of {wanted} Hz: choose one of {offered}")]
+    NoSuchRate {
+        /// What was asked for [Hz].
+        wanted: String,
+        /// What it offers [Hz].
+        offered: String,
+    },
     /// Vulkan, as the runtime offers it, cannot be used.
     #[error("the headset's graphics device cannot be used: {0}")]
     Graphics(String),
@@ -49,6 +57,14 @@ impl HeadsetError {
     /// True where a new session may succeed although this one did not.
     pub fn is_loss(&self) -> bool {
         matches!(self, Self::Lost(_))
+    }
+
+    pub(super) fn no_such_rate(wanted: f32, offered: &[f32]) -> Self {
+        let offered: Vec<String> = offered.iter().map(f32::to_string).collect();
+        Self::NoSuchRate {
+            wanted: wanted.to_string(),
+            offered: offered.join(", "),
+        }
     }
 
     /// Errors before there is an instance: the loader and the runtime's service speak.

@@ -11,7 +11,8 @@ use super::eyes::Eye;
 use super::frame::Frame;
 use super::note::{Focus, Note};
 use super::runtime::{Runtime, STEREO};
-use super::{Headset, HeadsetError, space, vulkan};
+use super::vulkan::{self, Vulkan};
+use super::{Headset, HeadsetError, space};
 use crate::offscreen::Readback;
 use crate::{Fov, Gpu, Renderer, Scene, View};
 
@@ -48,8 +49,9 @@ impl HeadsetSession {
     /// One sentence: what is missing, or what the runtime refused.
     pub fn open(settings: HeadsetSettings) -> Result<Self, HeadsetError> {
         let runtime = Runtime::find()?;
-        let vulkan = vulkan::open(&runtime)?;
-        let (session, waiter, stream) = create(&runtime, &vulkan.binding)?;
+        // Bound before the session, so that it outlives the session where something below fails.
+        let Vulkan { gpu, binding } = vulkan::open(&runtime)?;
+        let (session, waiter, stream) = create(&runtime, &binding)?;
         let mut notes = Vec::new();
         let actions = Actions::attach(&runtime, &session, &mut notes)?;
         let base =
@@ -63,7 +65,6 @@ impl HeadsetSession {
             runtime: runtime.headset.runtime.clone(),
             what: "a way to blend pictures with the surroundings",
         })?;
-        let gpu = vulkan.gpu;
         let eye = || Eye::new(&runtime, &session, &gpu, runtime.headset.eye_size);
         let eyes = [eye()?, eye()?];
         if runtime.enabled.fb_display_refresh_rate {
@@ -373,15 +374,10 @@ fn choose_rate(
 ) -> Result<f32, HeadsetError> {
     let offered = session.enumerate_display_refresh_rates()?;
     let rate = match wanted {
-        Some(wanted) => offered
-            .iter()
-            .copied()
-            .find(|rate| (rate - wanted).abs() < 0.5)
-            .ok_or_else(|| {
-                HeadsetError::Other(format!(
-                    "no refresh rate of {wanted} Hz (it offers {offered:?})"
-                ))
-            })?,
+        Some(wanted) => match offered.iter().find(|rate| (*rate - wanted).abs() < 0.5) {
+            Some(rate) => *rate,
+            None => return Err(HeadsetError::no_such_rate(wanted, &offered)),
+        },
         None => offered.iter().copied().fold(0.0, f32::max),
     };
     if rate > 0.0 {
