@@ -166,12 +166,15 @@ mod tests {
     fn nearest_is_on_the_belly_beside_it_and_on_the_crown_above() {
         let pin = Profile::specification();
         assert_eq!(pin.count(), 179);
-        // Belly 121.056 mm wide at 114.3 mm, a little wider above it; 381 mm tall (USBC specification).
+        // Belly 121.056 mm wide at 114.3 mm (USBC specification); the outline is widest, 121.252 mm, 5.08 mm higher.
+        let at_belly = |(r, y): &(f64, f64)| {
+            (r - 0.060528).abs() < 1e-6 && (y - (0.1143 - PIN_CG)).abs() < 1e-6
+        };
+        assert!(pin.corners.iter().any(at_belly));
         let beside = pin.nearest(DVec3::new(1.0, 0.1143 - PIN_CG, 0.0));
-        assert!(
-            (1.0 - beside.distance - 0.060528).abs() < 2e-4,
-            "{beside:?}"
-        );
+        let widest = (1.0 - 0.060626_f64).hypot(0.00508);
+        assert!((beside.distance - widest).abs() < 1e-9, "{beside:?}");
+        // 381 mm tall.
         let above = pin.nearest(DVec3::Y);
         assert!((1.0 - above.distance - (0.381 - PIN_CG)).abs() < 1e-6);
     }
