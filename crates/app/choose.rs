@@ -35,14 +35,17 @@ impl Machine {
         };
         Machine {
             headset,
-            window: window_possible(|name| std::env::var_os(name).is_some()),
+            window: display(),
         }
     }
+}
 
-    /// Whether a window can be hoped for.
-    pub fn has_display() -> bool {
-        window_possible(|name| std::env::var_os(name).is_some()).is_ok()
-    }
+/// Whether a window can be hoped for on this machine.
+///
+/// # Errors
+/// Why not.
+pub fn display() -> Result<(), String> {
+    window_possible(|name| std::env::var_os(name).is_some())
 }
 
 /// Whether a window can be hoped for; opening it may still fail, with its own sentence.

@@ -7,6 +7,9 @@ pub mod script;
 
 use game::{Game, Input};
 
+/// Longest time that one frame makes up for [s]: after a longer stall the alley goes on from where it was.
+pub const LONGEST_CATCH_UP_S: f64 = 0.25;
+
 /// Something that a participant holds or is.
 pub trait Device {
     /// The input of the next frame; `game` is as the last frame left it, and is what can be seen.

@@ -154,25 +154,13 @@ pub fn run(setup: Setup, root: &Path, wanted: Wanted, refresh_rate_hz: Option<f3
         session.finish(None, wanted, &mut |_| ())?;
         return outcome;
     }
-    finish(session, root, &config, wanted, stop)
-}
-
-fn finish(
-    session: Session,
-    root: &Path,
-    config: &Config,
-    wanted: Wanted,
-    stop: Arc<AtomicBool>,
-) -> Result<()> {
+    // Who stops by Ctrl-C or from the mirror wants no pictures; one who stops these does.
     let was_stopped = stop.swap(false, Ordering::Relaxed);
-    let mut painter = (session.has_throws() && !was_stopped)
-        .then(|| Painter::new(root, config))
+    let painter = (session.has_throws() && !was_stopped)
+        .then(|| Painter::new(root, &config))
         .transpose()?
         .map(|painter| painter.stopped_by(stop));
-    let mut progress = Progress::new();
-    let summary = session.finish(painter.as_mut(), wanted, &mut |text| progress.say(text))?;
-    progress.end();
-    play::report(&summary);
+    play::close(session, painter, wanted, Progress::new())?;
     Ok(())
 }
 

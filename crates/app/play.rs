@@ -66,7 +66,7 @@ pub fn play(arguments: &PlayArguments, root: &Path) -> Result<()> {
 }
 
 /// What is said after Ctrl-C.
-pub const INTERRUPTED: &str = "Interrupted: the recording is in order up to here; pictures that were not finished are left out.";
+const INTERRUPTED: &str = "Interrupted: the recording is in order up to here; pictures that were not finished are left out.";
 
 /// Turned on by Ctrl-C (or a request to terminate): the loop ends in order after its frame.
 ///
@@ -80,11 +80,30 @@ pub fn interruption() -> Result<Arc<AtomicBool>> {
     Ok(flag)
 }
 
+/// Ends a session that went well: writes its files, draws its pictures where there is a painter, and reports.
+///
+/// # Errors
+/// When a file cannot be written or a picture cannot be drawn.
+pub fn close(
+    session: Session,
+    mut painter: Option<Painter>,
+    wanted: Wanted,
+    mut progress: Progress,
+) -> Result<Summary> {
+    let summary = session.finish(painter.as_mut(), wanted, &mut |text| progress.say(text))?;
+    progress.end();
+    if painter.is_some_and(|painter| painter.is_stopped()) {
+        println!("{INTERRUPTED}");
+    }
+    report(&summary);
+    Ok(summary)
+}
+
 /// The scripted participant plays both games without a screen, as fast as the machine can.
 fn offscreen(setup: Setup, root: &Path, wanted: Wanted) -> Result<()> {
     // Before anything is written: a missing driver or asset must not cost a game.
     let stop = interruption()?;
-    let mut painter = Painter::new(root, &setup.conditions.lobby)?.stopped_by(Arc::clone(&stop));
+    let painter = Painter::new(root, &setup.conditions.lobby)?.stopped_by(Arc::clone(&stop));
     let mut script = Script::new(
         &setup.conditions.lobby,
         setup.seed,
@@ -103,15 +122,9 @@ fn offscreen(setup: Setup, root: &Path, wanted: Wanted) -> Result<()> {
         session.finish(None, wanted, &mut |_| ())?;
         return Err(error);
     }
-    let summary = session.finish(Some(&mut painter), wanted, &mut |text| progress.say(text))?;
-    progress.end();
-    if painter.is_stopped() {
-        println!("{INTERRUPTED}");
-    }
-    report(&summary);
+    let simulated_s = close(session, Some(painter), wanted, progress)?.simulated_s;
     println!(
-        "{:.0} simulated seconds in {simulated_in:.1} s, pictures in {:.1} s.",
-        summary.simulated_s,
+        "{simulated_s:.0} simulated seconds in {simulated_in:.1} s, pictures in {:.1} s.",
         started.elapsed().as_secs_f64() - simulated_in
     );
     Ok(())
@@ -161,7 +174,7 @@ fn progress_text(event: &EventKind, frames: u32) -> Option<String> {
 }
 
 /// Prints what a session left: score sheets, files, hash, refusals.
-pub fn report(summary: &Summary) {
+fn report(summary: &Summary) {
     for sheet in &summary.sheets {
         println!("\n{sheet}");
     }

@@ -22,10 +22,10 @@ use winit::window::{Window, WindowId};
 
 use crate::choose::Choice;
 use crate::convert::{self, Stock};
-use crate::devices::Device;
 use crate::devices::desk::Desk;
 use crate::devices::gamepad::Gamepads;
 use crate::devices::script::{Script, Velocities};
+use crate::devices::{Device, LONGEST_CATCH_UP_S};
 use crate::pictures::{Painter, Wanted};
 use crate::play::{self, Progress};
 use crate::session::{Session, Setup};
@@ -35,8 +35,6 @@ use overlay::Overlay;
 
 /// Vertical field of view of the window [rad]: wide enough to see hand and pins at once.
 const WINDOW_FOV: f32 = 1.05;
-/// Longest time that one picture makes up for [s]: after a longer stall the alley goes on from where it was.
-const LONGEST_CATCH_UP_S: f64 = 0.25;
 /// Pictures a second of a display that does not tell.
 const USUAL_HZ: f64 = 60.0;
 /// Where the eyes are while the head is not tracked: behind the approach, at a standing person's height [m].
@@ -79,18 +77,12 @@ pub fn run(setup: Setup, root: &Path, wanted: Wanted, choice: Choice) -> Result<
         session.finish(None, wanted, &mut |_| ())?;
         return Err(failure);
     }
-    let mut painter = session
+    let painter = session
         .has_throws()
         .then(|| Painter::new(root, &config))
         .transpose()?
         .map(|painter| painter.stopped_by(stop));
-    let mut progress = Progress::new();
-    let summary = session.finish(painter.as_mut(), wanted, &mut |text| progress.say(text))?;
-    progress.end();
-    if painter.is_some_and(|painter| painter.is_stopped()) {
-        println!("{}", play::INTERRUPTED);
-    }
-    play::report(&summary);
+    play::close(session, painter, wanted, Progress::new())?;
     Ok(())
 }
 

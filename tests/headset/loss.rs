@@ -43,6 +43,12 @@ impl Played {
     }
 }
 
+/// Starts the runtime again, and waits until the program has found it.
+fn bring_back(service: &mut Service, client: &mut Client) {
+    service.restart();
+    client.wait_for("Connected to the headset again", PATIENCE);
+}
+
 fn replays(session: &Path) {
     let output = std::process::Command::new(env!("CARGO_BIN_EXE_bowling"))
         .args(["--root", env!("CARGO_MANIFEST_DIR"), "replay"])
@@ -70,10 +76,7 @@ fn a_killed_runtime_is_waited_for() {
     });
     assert!(room.game.steps() < steps + 720, "the alley stood still");
     assert_eq!(room.game.held(), Some(Model::Ball(0)));
-    played.service.restart();
-    played
-        .client
-        .wait_for("Connected to the headset again", PATIENCE);
+    bring_back(&mut played.service, &mut played.client);
     let focused = |room: &Room| {
         let lines = room
             .said
@@ -97,10 +100,7 @@ fn a_runtime_that_is_asked_to_end_is_waited_for() {
     let Some(mut played) = play() else { return };
     played.service.terminate();
     played.client.wait_for("waits for the headset", PATIENCE);
-    played.service.restart();
-    played
-        .client
-        .wait_for("Connected to the headset again", PATIENCE);
+    bring_back(&mut played.service, &mut played.client);
     played.end();
 }
 

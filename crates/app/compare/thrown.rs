@@ -259,18 +259,8 @@ struct Head {
     format: String,
     version: u32,
     bodies: Vec<String>,
-    release: HeadRelease,
+    release: Release,
     settings: Config,
-}
-
-#[derive(Deserialize)]
-struct HeadRelease {
-    offset: f64,
-    start: f64,
-    speed: f64,
-    angle: f64,
-    revs: f64,
-    axis_rotation: f64,
 }
 
 /// A state of the file of a shot.
@@ -324,14 +314,7 @@ fn of_shot(path: &Path) -> Result<Thrown> {
             .with_context(|| format!("{name} line 1: `pin {body}` is no pin"))?;
         pins.push(number);
     }
-    let release = Release {
-        offset: head.release.offset,
-        start: head.release.start,
-        speed: head.release.speed,
-        angle: head.release.angle,
-        revs: head.release.revs,
-        axis_rotation: head.release.axis_rotation,
-    };
+    let release = head.release;
     let alley = BareAlley::new(&config, &pins).with_context(|| name.to_string())?;
     let spots = alley.pins().iter().map(|(number, id)| {
         let at = alley.world.body(*id).pose().position;

@@ -4,11 +4,10 @@ use game::{Input, Tracked, TriggerChange, Velocity};
 use physics::Pose;
 use renderer::headset::{Change, HandReading, Readings, Side, TrackedPose};
 
+use super::LONGEST_CATCH_UP_S;
+
 /// A hand that closes further than this takes over from one that is open.
 const TAKES_OVER: f64 = 0.5;
-/// Longest time that one frame makes up for [s]: after a longer stall the alley goes on from where it was.
-const LONGEST_CATCH_UP_S: f64 = 0.25;
-
 /// Times of display jitter by less than this share of a step, which must not cost a step.
 const JITTER: f64 = 0.02;
 
@@ -17,8 +16,8 @@ const JITTER: f64 = 0.02;
 pub struct Participant {
     step_hz: f64,
     throwing: Side,
-    /// Trigger and squeeze of both hands in the last frame.
-    before: [[f64; 2]; 2],
+    /// Trigger and squeeze of the hand that throws, in the last frame.
+    before: [f64; 2],
     /// Hands whose buttons were down when hands changed roles: they mean nothing until all are up.
     ignored: [bool; 2],
     /// Time of display of the last frame that was played [ns].
@@ -33,7 +32,7 @@ impl Participant {
         Self {
             step_hz,
             throwing: Side::Right,
-            before: [[0.0; 2]; 2],
+            before: [0.0; 2],
             ignored: [false; 2],
             played_ns: None,
             ahead: 0.0,
@@ -83,8 +82,10 @@ impl Participant {
         for (ignored, hand) in self.ignored.iter_mut().zip(hands) {
             *ignored &= hand.forward || hand.back || hand.red || hand.blue;
         }
-        let changes = self.changes(readings);
         let hand = &hands[self.throwing as usize];
+        // Noise of what did not hold it closed, trigger or squeeze, does not count.
+        let [trigger, squeeze] = std::mem::replace(&mut self.before, [hand.trigger, hand.squeeze]);
+        let change = hand.changes[usize::from(squeeze > trigger)];
         let choosing = &hands[self.throwing.other() as usize];
         let [walks, chooses] =
             [self.throwing, self.throwing.other()].map(|side| !self.ignored[side as usize]);
@@ -97,20 +98,8 @@ impl Participant {
             press_red: chooses && choosing.red,
             press_blue: chooses && choosing.blue,
             steps: self.due(display_ns, period_s),
-            trigger_change: changes[self.throwing as usize]
-                .and_then(|change| aged(change, display_ns)),
+            trigger_change: change.and_then(|change| aged(change, display_ns)),
         }
-    }
-
-    /// For each hand the change of what held it closed: noise of the other of trigger and squeeze does not count.
-    fn changes(&mut self, readings: &Readings) -> [Option<Change>; 2] {
-        let mut changes = [None; 2];
-        for (side, hand) in readings.hands.iter().enumerate() {
-            let [trigger, squeeze] = self.before[side];
-            changes[side] = hand.changes[usize::from(squeeze > trigger)];
-            self.before[side] = [hand.trigger, hand.squeeze];
-        }
-        changes
     }
 
     /// Whole steps up to the time of display, or less than one beyond it.

@@ -30,8 +30,8 @@ const PERIOD: Duration = Duration::from_millis(33);
 /// # Errors
 /// What ended the thread.
 pub fn stay(watch: Watch, shared: Arc<Shared>, root: &Path, config: &Config) -> Result<()> {
-    let is_possible = crate::choose::Machine::has_display();
-    let Some(events) = is_possible.then(|| EventLoop::new().ok()).flatten() else {
+    let display = crate::choose::display();
+    let Some(events) = display.ok().and_then(|()| EventLoop::new().ok()) else {
         return watch.wait();
     };
     let mut mirror = Mirror {

@@ -55,10 +55,7 @@ impl Record {
                 "time": "s", "position": "m, world frame", "rotation": "quaternion x y z w, world from body",
                 "linear": "m/s, world frame", "angular": "rad/s, world frame",
             },
-            "release": {
-                "offset": release.offset, "start": release.start, "speed": release.speed,
-                "angle": release.angle, "revs": release.revs, "axis_rotation": release.axis_rotation,
-            },
+            "release": release,
             "settings": config,
         }))?;
         record.state(flight)?;

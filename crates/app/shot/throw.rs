@@ -3,12 +3,12 @@
 use game::{BareAlley, BareAlleyError};
 use glam::{DQuat, DVec3};
 use physics::{Body, BodyId, Impact, Motion, Pose, World};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::clock::thread_seconds;
 
 /// How a ball is let go.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Release {
     /// To the bowler's right of the lane's middle [m].
     pub offset: f64,

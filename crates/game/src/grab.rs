@@ -123,12 +123,13 @@ impl Game {
         };
         let id = self.room.id(held.entity);
         let config = &self.room.config.release;
-        let carried = grab_pose(&self.room, held, moment.hand);
         if moment.is_measured {
             // Later poses were guesses of the runtime at a hand that still held on.
             self.hand
                 .history
                 .push(moment.time, moment.hand, config.window_s);
+            let carried = moment.hand * held.hand_from_body;
+            let carried = kept_out(&self.room, held.entity, carried);
             self.room.world.set_pose(id, carried);
         }
         let position = self.room.world.body(id).pose().position;
@@ -211,11 +212,6 @@ pub(crate) struct Moment {
     pub velocity: Option<Velocity>,
     /// Whether the device measured the instant; it is that of the frame's poses else.
     pub is_measured: bool,
-}
-
-/// Where a held thing is when the hand is at `hand`.
-fn grab_pose(room: &Room, held: Held, hand: Pose) -> Pose {
-    kept_out(room, held.entity, hand * held.hand_from_body)
 }
 
 /// The nearest thing that the hand could close on.

@@ -160,14 +160,8 @@ impl Candidates {
             u * cos + w * sin
         };
         let heights: [f64; AROUND] = std::array::from_fn(|k| pair.rough_gap(at(k)));
-        for k in 0..AROUND {
-            let (before, after) = (
-                heights[(k + AROUND - 1) % AROUND],
-                heights[(k + 1) % AROUND],
-            );
-            if heights[k] >= before && heights[k] > after {
-                self.put(pair, at(k), State::Free);
-            }
+        for k in peaks(&heights) {
+            self.put(pair, at(k), State::Free);
         }
     }
 
@@ -217,11 +211,8 @@ impl Candidates {
         let (c, d) = (out * DIAGONAL, ahead * DIAGONAL);
         let around = [out, c + d, ahead, d - c, -out, -c - d, -ahead, c - d].map(|v| middle + v);
         let heights = around.map(|n| pair.rough_gap(n));
-        for (k, n) in around.into_iter().enumerate() {
-            let (before, after) = (heights[(k + 7) % 8], heights[(k + 1) % 8]);
-            if heights[k] >= before && heights[k] > after {
-                self.put(pair, n, state);
-            }
+        for k in peaks(&heights) {
+            self.put(pair, around[k], state);
         }
     }
 
@@ -239,6 +230,14 @@ impl Candidates {
             self.put(pair, q, State::Corner(i, j));
         }
     }
+}
+
+/// Which of the heights around a circle are higher than their neighbours; of equal ones the last.
+fn peaks<const N: usize>(heights: &[f64; N]) -> impl Iterator<Item = usize> + '_ {
+    (0..N).filter(|&k| {
+        let (before, after) = (heights[(k + N - 1) % N], heights[(k + 1) % N]);
+        heights[k] >= before && heights[k] > after
+    })
 }
 
 /// The direction in which cores of these summed extents are thinnest: needles and plates part that way.

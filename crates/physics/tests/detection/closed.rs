@@ -68,12 +68,7 @@ fn a_sphere_against_boxes_capsules_and_all_of_revolution() {
                 Known::Cuboid(h) => from_cuboid(h, p),
                 _ => unreachable!("the kinds are listed above"),
             };
-            let case = Case {
-                a: body,
-                pose_a,
-                b: Known::Sphere(radius),
-                pose_b: Pose::new(pose_a.transform_point(p), rotation(&mut random)),
-            };
+            let case = beside(body, pose_a, p, radius, &mut random);
             let found = answer(&case);
             wrong.unless((found.gap - (distance - radius)).abs() < 1e-12, || {
                 format!(
@@ -86,6 +81,16 @@ fn a_sphere_against_boxes_capsules_and_all_of_revolution() {
         }
     }
     wrong.end();
+}
+
+/// A body and a sphere whose centre is at `p` in the body's frame.
+fn beside(body: Known, pose_a: Pose, p: DVec3, radius: f64, random: &mut Random) -> Case {
+    Case {
+        a: body,
+        pose_a,
+        b: Known::Sphere(radius),
+        pose_b: Pose::new(pose_a.transform_point(p), rotation(random)),
+    }
 }
 
 /// The direction of a short way is rounding, off which a long mantle stands out: what is claimed has to be proven.
@@ -110,12 +115,7 @@ fn a_sphere_with_its_centre_close_to_an_axis_or_a_surface_claims_what_its_normal
                 let (n, point) = surface_point(&body, &mut random);
                 point + n * short.copysign(random.next())
             };
-            let case = Case {
-                a: body,
-                pose_a,
-                b: Known::Sphere(radius),
-                pose_b: Pose::new(pose_a.transform_point(p), rotation(&mut random)),
-            };
+            let case = beside(body, pose_a, p, radius, &mut random);
             let found = answer(&case);
             let proven = case.gap_along(found.normal);
             wrong.unless(found.gap - proven <= 1e-13 * case.size(), || {

@@ -135,7 +135,7 @@ impl Actions {
         for profile in &PROFILES {
             if profile
                 .extension
-                .is_some_and(|name| !is_enabled(runtime, name))
+                .is_some_and(|name| !runtime.has_profile(name))
             {
                 continue;
             }
@@ -262,9 +262,4 @@ impl Actions {
         }
         Ok(Some(session.instance().path_to_string(path)?))
     }
-}
-
-fn is_enabled(runtime: &Runtime, extension: &str) -> bool {
-    let name = [extension.as_bytes(), b"\0"].concat();
-    runtime.enabled.other.contains(&name)
 }

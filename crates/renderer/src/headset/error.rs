@@ -54,11 +54,6 @@ pub enum HeadsetError {
 }
 
 impl HeadsetError {
-    /// True where a new session may succeed although this one did not.
-    pub fn is_loss(&self) -> bool {
-        matches!(self, Self::Lost(_))
-    }
-
     pub(super) fn no_such_rate(wanted: f32, offered: &[f32]) -> Self {
         let offered: Vec<String> = offered.iter().map(f32::to_string).collect();
         Self::NoSuchRate {
@@ -124,8 +119,10 @@ mod tests {
             HeadsetError::at_system(Answer::ERROR_FORM_FACTOR_UNAVAILABLE, "Monado"),
             HeadsetError::NotConnected("Monado".to_owned())
         );
-        assert!(HeadsetError::at_system(Answer::ERROR_INSTANCE_LOST, "Monado").is_loss());
-        assert!(!HeadsetError::from(Answer::ERROR_PATH_UNSUPPORTED).is_loss());
+        let lost = HeadsetError::at_system(Answer::ERROR_INSTANCE_LOST, "Monado");
+        assert!(matches!(lost, HeadsetError::Lost(_)), "{lost}");
+        let other = HeadsetError::from(Answer::ERROR_PATH_UNSUPPORTED);
+        assert!(!matches!(other, HeadsetError::Lost(_)), "{other}");
     }
 
     #[test]

@@ -58,12 +58,10 @@ impl Eye {
         })
     }
 
-    /// The image to draw into next; waits until the compositor has done with it.
-    pub fn acquire(&mut self) -> Result<&wgpu::Texture, HeadsetError> {
-        let index = self.swapchain.acquire_image()? as usize;
-        self.acquired = Some(index);
-        self.swapchain.wait_image(xr::Duration::INFINITE)?;
-        Ok(&self.textures[index])
+    /// Takes the image to draw into next; waits until the compositor has done with it.
+    pub fn acquire(&mut self) -> Result<(), HeadsetError> {
+        self.acquired = Some(self.swapchain.acquire_image()? as usize);
+        Ok(self.swapchain.wait_image(xr::Duration::INFINITE)?)
     }
 
     /// The image that is being drawn into.
@@ -99,21 +97,30 @@ impl Eye {
 /// A swapchain's image as a texture that wgpu draws into and never frees.
 #[expect(unsafe_code, reason = "images of the runtime become textures of wgpu")]
 fn wrap(gpu: &Gpu, image: u64, size: [u32; 2]) -> Result<wgpu::Texture, HeadsetError> {
-    let extent = wgpu::Extent3d {
-        width: size[0],
-        height: size[1],
-        depth_or_array_layers: 1,
+    let outer = wgpu::TextureDescriptor {
+        label: Some("headset eye"),
+        size: wgpu::Extent3d {
+            width: size[0],
+            height: size[1],
+            depth_or_array_layers: 1,
+        },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: COLOR_FORMAT,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+        view_formats: &[],
     };
     // SAFETY: the guard is dropped before the device is.
     let device = unsafe { gpu.device.as_hal::<hal::api::Vulkan>() }
         .ok_or_else(|| HeadsetError::Graphics("its device is not Vulkan's".to_owned()))?;
     let inner = hal::TextureDescriptor {
-        label: Some("headset eye"),
-        size: extent,
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: COLOR_FORMAT,
+        label: outer.label,
+        size: outer.size,
+        mip_level_count: outer.mip_level_count,
+        sample_count: outer.sample_count,
+        dimension: outer.dimension,
+        format: outer.format,
         usage: wgpu::TextureUses::COLOR_TARGET | wgpu::TextureUses::COPY_SRC,
         memory_flags: hal::MemoryFlags::empty(),
         view_formats: Vec::new(),
@@ -128,17 +135,7 @@ fn wrap(gpu: &Gpu, image: u64, size: [u32; 2]) -> Result<wgpu::Texture, HeadsetE
             hal::vulkan::TextureMemory::External,
         )
     };
-    let outer = wgpu::TextureDescriptor {
-        label: Some("headset eye"),
-        size: extent,
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: COLOR_FORMAT,
-        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
-        view_formats: &[],
-    };
-    // SAFETY: both descriptors agree, and a swapchain's image is handed out as a colour target.
+    // SAFETY: one descriptor is made from the other, and a swapchain's image is handed out as a colour target.
     Ok(unsafe {
         gpu.device.create_texture_from_hal::<hal::api::Vulkan>(
             texture,

@@ -77,6 +77,11 @@ impl Runtime {
 }
 
 impl Runtime {
+    /// Whether an extension of a controller's profile was enabled.
+    pub fn has_profile(&self, extension: &str) -> bool {
+        self.enabled.other.contains(&ended(extension))
+    }
+
     /// The runtime's clock; `None` where it cannot be read.
     pub fn now(&self) -> Option<xr::Time> {
         #[cfg(unix)]
@@ -87,12 +92,16 @@ impl Runtime {
     }
 }
 
+/// A name as OpenXR lists it, with its end.
+fn ended(name: &str) -> Vec<u8> {
+    [name.as_bytes(), b"\0"].concat()
+}
+
 /// Of what is offered, what the program has a use for.
 fn usable(offered: &xr::ExtensionSet) -> xr::ExtensionSet {
     let mut wanted = xr::ExtensionSet::default();
     // Asked for only where it is offered, so that a lack of it is told from a lack of a runtime.
     wanted.khr_vulkan_enable2 = offered.khr_vulkan_enable2;
-    wanted.khr_composition_layer_depth = offered.khr_composition_layer_depth;
     #[cfg(unix)]
     {
         wanted.khr_convert_timespec_time = offered.khr_convert_timespec_time;
@@ -108,7 +117,7 @@ fn usable(offered: &xr::ExtensionSet) -> xr::ExtensionSet {
     let names = offered.names();
     let profiles = PROFILES.iter().filter_map(|profile| profile.extension);
     for extension in profiles {
-        let name = [extension.as_bytes(), b"\0"].concat();
+        let name = ended(extension);
         // By name: their functions are none, so the typed flags would add nothing but a line each.
         if names.contains(&name.as_slice()) && !wanted.other.contains(&name) {
             wanted.other.push(name);
