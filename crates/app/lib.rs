@@ -19,7 +19,6 @@ pub mod output;
 pub mod pictures;
 pub mod play;
 pub mod query;
-pub mod random;
 pub mod rehearsal;
 pub mod replay;
 pub mod root;

@@ -15,9 +15,9 @@ use anyhow::{Context, Result};
 use game::BareAlley;
 
 use crate::args::{ShotArguments, unusable};
-use crate::random::SplitMix64;
 use answer::Shot;
 use distribution::Distribution;
+use experiment::random::SplitMix64;
 use scene::{alley, steps};
 use throw::{Flight, Release};
 

@@ -12,11 +12,11 @@ use game::BareAlley;
 
 use crate::args::{Span, StrikeMapArguments, unusable};
 use crate::output::Draft;
-use crate::random::SplitMix64;
 use crate::shot::distribution::Distribution;
 use crate::shot::scene::{alley, steps};
 use crate::shot::series;
 use crate::shot::throw::{Flight, Outcome, Release};
+use experiment::random::SplitMix64;
 
 /// The map: distributions by offset and angle.
 #[derive(Clone, Debug, PartialEq)]

@@ -8,7 +8,7 @@ use super::oracle;
 use super::poses::{self, CLASSES, Case, Class};
 use super::report::{Line, Measure, Point, Reason, Reference, Report, largest, p95};
 use super::timing::{Task, each, in_turns};
-use crate::random::SplitMix64;
+use experiment::random::SplitMix64;
 
 pub const NAME: &str = "cap";
 

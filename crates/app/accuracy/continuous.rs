@@ -12,7 +12,7 @@ use super::report::{Line, Measure, Point, Reason, Reference, Report, p95};
 use super::step::{HIT_FLOORS, RATES, point, time_hits};
 use super::timing::{Task, in_turns};
 use crate::hard_cases::scene::{Setup, between};
-use crate::random::SplitMix64;
+use experiment::random::SplitMix64;
 
 pub const NAME: &str = "continuous";
 

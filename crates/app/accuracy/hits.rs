@@ -7,8 +7,8 @@ use physics::{BodyId, Compound, Effect, Effects, Response, Settings, World};
 
 use super::profile::Profile;
 use crate::hard_cases::scene::{BALL_RADIUS, PIN, Setup, between};
-use crate::random::SplitMix64;
 use crate::shot::clock::thread_seconds;
+use experiment::random::SplitMix64;
 
 const SEED: u64 = 8;
 /// Mass of the ball [kg].

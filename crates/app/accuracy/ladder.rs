@@ -15,7 +15,7 @@ use super::racks::{self, Rack};
 use super::report::{Line, Measure, Point, Reason, Reference, Report, largest, p95};
 use super::timing::{Time, each, in_turns};
 use crate::hard_cases::scene::{BALL_RADIUS, between};
-use crate::random::SplitMix64;
+use experiment::random::SplitMix64;
 
 pub const NAME: &str = "ladder";
 

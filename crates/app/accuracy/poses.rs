@@ -10,7 +10,7 @@ use physics::{Pose, Shape};
 
 use super::oracle;
 use crate::hard_cases::scene::{between, direction, rotation};
-use crate::random::SplitMix64;
+use experiment::random::SplitMix64;
 
 /// Sizes of the shapes [m]: as of pins and balls.
 const SIZE: f64 = 0.1;

@@ -9,7 +9,7 @@ use super::kernels::{double, single};
 use super::report::{Line, Measure, Point, Reference, Report, largest, p95};
 use super::timing::{Task, Time, each, in_turns};
 use crate::hard_cases::scene::{G, between, direction, rotation, vector};
-use crate::random::SplitMix64;
+use experiment::random::SplitMix64;
 
 pub const NAME: &str = "precision";
 

@@ -12,9 +12,9 @@ use super::timing::Time;
 use crate::hard_cases::scene::{
     BALL_RADIUS, Setup, add_alley, add_rack, between, run, throw, tilt,
 };
-use crate::random::SplitMix64;
 use crate::shot::clock::thread_seconds;
 use crate::shot::series;
+use experiment::random::SplitMix64;
 
 /// Simulated time of a throw [s]: what falls has begun to.
 const DURATION: f64 = 1.2;

@@ -11,7 +11,7 @@ use super::racks::{self, Rack};
 use super::report::{Line, Measure, Point, Reference, Report, largest, share_below};
 use super::timing::{each, in_turns};
 use crate::hard_cases::scene::{MODELS, between, composite_pin, direction, rotation, vector};
-use crate::random::SplitMix64;
+use experiment::random::SplitMix64;
 
 pub const NAME: &str = "response";
 

@@ -7,7 +7,7 @@ use super::budget::Budget;
 use super::report::{Line, Measure, Point, Reason, Reference, Report, largest};
 use super::timing::{Task, in_turns};
 use crate::hard_cases::scene::{Setup, between, run};
-use crate::random::SplitMix64;
+use experiment::random::SplitMix64;
 
 pub const NAME: &str = "solver";
 

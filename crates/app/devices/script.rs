@@ -20,7 +20,7 @@ use physics::Pose;
 use self::action::{Action, HandGoal, Reach};
 use self::body::{Body, HandState, Stance, yaw_towards};
 use super::Device;
-use crate::random::SplitMix64;
+use experiment::random::SplitMix64;
 
 /// How long the hand takes to open [s]: a finger leaving a trigger.
 const OPENING_TIME: f64 = 0.05;

@@ -5,9 +5,9 @@ use game::{BareAlley, Config, PINS};
 use glam::DVec3;
 use physics::{BodyId, Effect, Effort, Pose, World};
 
-use crate::random::SplitMix64;
 use crate::shot::clock::thread_seconds;
 use crate::shot::throw::Release;
+use experiment::random::SplitMix64;
 
 /// Time of a throw [s], and how often a state is taken in it.
 const DURATION: f64 = 4.0;

@@ -11,7 +11,7 @@ use super::findings::{Findings, Outcome, worse};
 use super::scene::{
     BALL_RADIUS, Setup, add_alley, add_rack, between, composite_pin, run, throw, tilt,
 };
-use crate::random::SplitMix64;
+use experiment::random::SplitMix64;
 
 pub const CASES: &[Case] = &[
     Case {

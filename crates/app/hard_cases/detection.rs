@@ -8,7 +8,7 @@ use super::Case;
 use super::findings::{Findings, Outcome, worse};
 use super::oracle::{Kind, Known, Pair};
 use super::scene::{between, direction, rotation, vector};
-use crate::random::SplitMix64;
+use experiment::random::SplitMix64;
 
 pub const CASES: &[Case] = &[
     Case {

@@ -7,7 +7,7 @@ use physics::{BodyId, Compound, MassProperties, Pose, Response, Shape, World};
 use super::Case;
 use super::findings::{Findings, Outcome, worse};
 use super::scene::{MODELS, Setup, between, direction, momenta, rotation, vector};
-use crate::random::SplitMix64;
+use experiment::random::SplitMix64;
 
 pub const CASES: &[Case] = &[
     Case {

@@ -4,7 +4,7 @@ use glam::DVec3;
 use physics::{Pose, Shape};
 
 use super::scene::between;
-use crate::random::SplitMix64;
+use experiment::random::SplitMix64;
 
 /// The kinds of shapes that are drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -12,7 +12,7 @@ use super::scene::{
     BASE_RADIUS, MODELS, PIN_CG, RATES, Setup, add_rack, composite_pin, ellipsoid_pin, run, tilt,
     vector,
 };
-use crate::random::SplitMix64;
+use experiment::random::SplitMix64;
 
 pub const CASES: &[Case] = &[
     Case {

@@ -9,7 +9,7 @@ use physics::{
     PairContact, Pose, Response, Settings, Shape, Surface, World,
 };
 
-use crate::random::SplitMix64;
+use experiment::random::SplitMix64;
 
 /// Gravity [m/s2].
 pub const G: f64 = 9.81;

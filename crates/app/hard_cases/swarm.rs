@@ -7,7 +7,7 @@ use physics::{Body, Response};
 use super::Case;
 use super::findings::{Findings, Outcome, worse};
 use super::scene::{Setup, composite_pin, vector};
-use crate::random::SplitMix64;
+use experiment::random::SplitMix64;
 
 pub const CASES: &[Case] = &[Case {
     name: "compounds-in-a-swarm",

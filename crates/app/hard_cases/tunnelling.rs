@@ -7,7 +7,7 @@ use physics::{BodyDef, Compound, MassProperties, Motion, Pose, Response, Shape};
 use super::Case;
 use super::findings::{Findings, Outcome, worse};
 use super::scene::{MODELS, Setup, between, composite_pin, direction, single, vector};
-use crate::random::SplitMix64;
+use experiment::random::SplitMix64;
 
 pub const CASES: &[Case] = &[
     Case {

@@ -148,7 +148,7 @@ mod tests {
 
     #[test]
     fn number_reads_back_to_the_same_bits() {
-        let mut random = crate::random::SplitMix64::new(3);
+        let mut random = experiment::random::SplitMix64::new(3);
         for _ in 0..20_000 {
             let value = f64::from_bits(random.next_u64());
             if value.is_finite() {

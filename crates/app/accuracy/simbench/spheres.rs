@@ -6,7 +6,7 @@ use super::{Form, GRAVITY, Scenario, Simulated, Thing, lines};
 use crate::accuracy::budget::Budget;
 use crate::accuracy::report::{Line, Measure, Reason, Reference, Report};
 use crate::hard_cases::scene::between;
-use crate::random::SplitMix64;
+use experiment::random::SplitMix64;
 
 /// The one that loses all.
 pub const NAME: &str = "666";

@@ -6,7 +6,7 @@ use glam::{DQuat, DVec2, DVec3};
 use super::action::{Action, HandGoal};
 use super::body::yaw_towards;
 use super::swing::{Swing, fingers_along_arm};
-use crate::random::SplitMix64;
+use experiment::random::SplitMix64;
 
 /// From the middle of the hand to the ball's surface when it closes [m]: beyond the sphere that
 /// pushes what it touches, within the hand's reach.

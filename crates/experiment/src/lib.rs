@@ -1,0 +1,6 @@
+//! The experiment: who plays what, what is asked, what is kept, and what it says. No graphics, no game, no clock.
+//!
+//! Knows neither balls nor headsets: the app hands over plain numbers and rows.
+#![cfg_attr(test, allow(clippy::unwrap_used))]
+
+pub mod random;
