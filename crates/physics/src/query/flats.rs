@@ -21,6 +21,61 @@ pub(crate) fn on_face(a: &Placed, b: &Placed, last: DVec3) -> Option<Separation>
     line_up(a, b, n, s).ok()
 }
 
+/// Cosine of the angle from the start within which a box's axis is looked at: 0.1 rad.
+const CLOSE: f64 = 0.995;
+
+/// The answer for the convex shape `a` whose farthest point lies over a face of the box `b`, if it does.
+///
+/// The face is the one that `start` is close to, and without a start that of which a's centre stands out most. Apart that
+/// is the largest gap; an overlap is only looked for with a start, and is local.
+pub(super) fn over_face(
+    a: &Placed,
+    b: &Placed,
+    half: DVec3,
+    start: Option<DVec3>,
+) -> Option<Separation> {
+    let toward = start.map_or_else(|| b.local(a.position - b.position), |n| -b.local(n));
+    let side = match start {
+        Some(_) => toward.abs(),
+        None => toward.abs() - half,
+    };
+    let (x, y, z) = (side.x, side.y, side.z);
+    let face = if x >= y && x >= z {
+        DVec3::X
+    } else if y >= z {
+        DVec3::Y
+    } else {
+        DVec3::Z
+    };
+    if start.is_some() && side.max_element() < CLOSE {
+        return None;
+    }
+    let outward = face * face.dot(toward).signum();
+    let n = b.rotation * -outward;
+    let tip = b.local(a.support(n) - b.position);
+    let aside = tip.abs() - half;
+    if (aside * (DVec3::ONE - face)).max_element() > 0.0 {
+        return None;
+    }
+    let gap = outward.dot(tip) - outward.abs().dot(half);
+    if gap <= 0.0 && start.is_none() {
+        return None;
+    }
+    let found = line_up(a, b, n, gap).ok()?;
+    let upper = if gap > 0.0 {
+        Some((found.point_b - found.point_a).length().max(gap))
+    } else {
+        let balls = super::bounds::overlap(a, b, found.point_a, found.point_b)?;
+        Some(balls.max(gap))
+    };
+    Some(Separation {
+        upper,
+        iterations: 1,
+        local: gap <= 0.0,
+        ..found
+    })
+}
+
 /// The axis of a box that `n` is, if it is one but for rounding.
 fn face_normal(shape: &Placed, n: DVec3) -> Option<DVec3> {
     if !matches!(shape.shape.kind, Kind::Cuboid { .. }) {

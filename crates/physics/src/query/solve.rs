@@ -6,7 +6,7 @@ use super::cores::{Core, CuboidCore, EllipsoidCore, PointCore, RevolutionCore, T
 use super::pair::Pair;
 use super::search::Goal;
 use super::starts::{self, Found};
-use super::{Limits, Placed, Separation, bounds, boxes, gap_along, simplex};
+use super::{Limits, Placed, Separation, bounds, boxes, flats, gap_along, simplex};
 use crate::shape::Kind;
 
 /// A shape this many times as long as it is thick, or as wide, is thin.
@@ -75,6 +75,12 @@ pub(super) fn search(a: &Placed, b: &Placed, start: Option<DVec3>, limits: Limit
             Ok(answer) => return answer,
             Err(n) => task.start = Some(n),
         }
+    }
+    if let Kind::Cuboid { half } = &b.shape.kind
+        && first < second
+        && let Some(answer) = flats::over_face(a, b, *half, start)
+    {
+        return answer;
     }
     match &a.shape.kind {
         Kind::Sphere { .. } => task.with_b(PointCore),

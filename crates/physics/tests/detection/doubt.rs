@@ -1,4 +1,4 @@
-//! Overlaps that are none: starts that have grown old, and the wrong one of several maxima.
+//! Overlaps that are none: starts that have grown old, and the wrong one of several maxima; and what proves one.
 
 use std::f64::consts::FRAC_PI_3;
 
@@ -67,6 +67,32 @@ fn a_wrong_way_out_is_not_an_overlap() {
     } = answer(&case);
     assert!((found - gap).abs() < 1e-9, "{found} for {gap}");
     assert!(angle(n, normal) < 1e-4, "{n} for {normal}");
+}
+
+/// The base of a pin that leans by some microradians over a lane's box: its lowest rim point says how far, at once.
+#[test]
+fn a_face_answers_for_what_lies_over_it() {
+    let mut wrong = Wrong::default();
+    let (radius, half) = (0.0258, 0.19);
+    for lean in [1e-8, 1e-5, 1e-3] {
+        for gap in [-1e-6, 1e-6, 0.01] {
+            let low = half * f64::cos(lean) + radius * f64::sin(lean);
+            let position = DVec3::new(0.3, LANE.y + low + gap, -4.0);
+            let case = Case {
+                a: Known::Frustum(radius, 0.06, half),
+                pose_a: Pose::new(position, DQuat::from_rotation_x(lean)),
+                b: Known::Cuboid(LANE),
+                pose_b: Pose::IDENTITY,
+            };
+            let start = DQuat::from_rotation_z(0.02) * -DVec3::Y;
+            let found = ask(&case, Some(start), Limits::default());
+            let right = (found.gap - gap).abs() < 1e-12 && found.normal == -DVec3::Y;
+            wrong.unless(right && found.iterations == 1, || {
+                format!("{lean} {gap}: {found:?}")
+            });
+        }
+    }
+    wrong.end();
 }
 
 /// A slender tip in a face: half way between the closest points is outside of the cone, which leans, and its apex alone
