@@ -31,6 +31,32 @@ impl SplitMix64 {
         z ^ (z >> 31)
     }
 
+    /// Uniform on the whole numbers below `bound`, which is above zero, by rejection: a remainder alone favours the small ones.
+    ///
+    /// # Panics
+    /// When `bound` is zero.
+    pub fn below(&mut self, bound: u64) -> u64 {
+        assert!(bound > 0, "there is no whole number below zero");
+        // The first 2^64 mod bound values would be one too many of the small remainders.
+        let surplus = bound.wrapping_neg() % bound;
+        loop {
+            let bits = self.next_u64();
+            if bits >= surplus {
+                return bits % bound;
+            }
+        }
+    }
+
+    /// Every order of `items` equally likely.
+    ///
+    /// R. Durstenfeld, *Algorithm 235: Random permutation*, CACM 1964, after Fisher and Yates: from the last place down.
+    pub fn shuffle<T>(&mut self, items: &mut [T]) {
+        for last in (1..items.len()).rev() {
+            let chosen = self.below(last as u64 + 1) as usize;
+            items.swap(chosen, last);
+        }
+    }
+
     /// Uniform in [0, 1), 53 bits.
     pub fn uniform(&mut self) -> f64 {
         (self.next_u64() >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
@@ -73,5 +99,32 @@ mod tests {
             mean.abs() < 0.03 && (variance - 1.0).abs() < 0.04,
             "{mean} {variance}"
         );
+    }
+
+    #[test]
+    fn below_refuses_the_surplus_of_small_remainders() {
+        // A bound of 3/4 of 2^64: without rejection the lowest third would come up twice as often.
+        let bound = 3 << 62;
+        let mut random = SplitMix64::new(11);
+        let low = (0..30_000)
+            .filter(|_| random.below(bound) < bound / 3)
+            .count();
+        // A third of 30,000, and four standard errors (82).
+        assert!((9_670..10_330).contains(&low), "{low}");
+        assert!((0..100).all(|_| random.below(1) == 0));
+    }
+
+    #[test]
+    fn shuffle_gives_every_order_as_often() {
+        let mut random = SplitMix64::new(5);
+        let mut counts = std::collections::BTreeMap::new();
+        for _ in 0..24_000 {
+            let mut items = [0, 1, 2, 3];
+            random.shuffle(&mut items);
+            *counts.entry(items).or_insert(0) += 1;
+        }
+        assert_eq!(counts.len(), 24);
+        // 1000 each; four and a half standard errors (31).
+        assert!(counts.values().all(|count| (860..1140).contains(count)));
     }
 }
