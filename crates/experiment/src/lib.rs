@@ -6,5 +6,6 @@
 pub mod consent;
 pub mod digest;
 pub mod files;
+pub mod plan;
 pub mod questionnaire;
 pub mod random;
