@@ -6,6 +6,7 @@
 pub mod consent;
 pub mod digest;
 pub mod files;
+pub mod journal;
 pub mod plan;
 pub mod questionnaire;
 pub mod random;
