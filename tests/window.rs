@@ -134,7 +134,8 @@ impl Eyes {
         let Entry::Header(header) = entry(&line) else {
             panic!("the journal begins with {line}");
         };
-        let game = Game::new(header.conditions, header.frames).expect("what the program plays");
+        let conditions = header.conditions.expect("no study");
+        let game = Game::new(conditions, header.frames).expect("what the program plays");
         Self {
             journal,
             line: String::new(),

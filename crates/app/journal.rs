@@ -1,10 +1,10 @@
 //! The journal: everything that the game consumed, one JSON line each, in the order it happened.
 //!
-//! A line is written before the game sees it, so that a journal always reaches as far as the game
-//! did. Lines carry a number and a running check over all lines so far: a line that is missing,
-//! moved or changed is named when the journal is read.
+//! A line is handed to the writer before the game sees it. How lines are numbered, checked and written is
+//! [`experiment::journal`]'s; here is what they mean.
 
 mod read;
+pub mod settings;
 mod write;
 
 use game::{Conditions, Input, Tracked, TriggerChange, Velocity};
@@ -12,13 +12,11 @@ use glam::{DQuat, DVec3};
 use physics::Pose;
 use serde::{Deserialize, Serialize};
 
-pub use read::{Recording, read};
+pub use experiment::journal::SCHEMA;
+pub use read::{Recording, Story, read, read_open};
 pub use write::Journal;
 
 use crate::boundary::Refused;
-
-/// Version of the lines' meaning; a program refuses journals of another one.
-pub const SCHEMA: u32 = 2;
 
 /// One line's content.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -32,6 +30,8 @@ pub enum Entry {
     Event(serde_json::Value),
     /// What the device said of itself in that frame, or before the first. The game never reads it.
     Device(serde_json::Value),
+    /// What the experiment noted: a stage, an answer, a remark. The game never reads it.
+    Study(serde_json::Value),
     /// The last line of a session that was closed in order.
     End(End),
 }
@@ -58,8 +58,28 @@ pub struct Header {
     pub frames: u32,
     /// Scene that the configurations came from.
     pub scene: String,
-    /// Resolved settings of the room and of both conditions.
-    pub conditions: Conditions,
+    /// Resolved settings of the room and of both conditions; a study keeps them with its plan instead, because they
+    /// would tell which condition is which.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub conditions: Option<Conditions>,
+    /// In a study: the salted SHA-256 of the settings, which tells that the plan's are those that were played.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub settings_digest: Option<String>,
+    /// Where this journal takes up a session that was broken off.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub continues: Option<Continues>,
+}
+
+/// The place in earlier journals at which a resumed session begins.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Continues {
+    /// File name of the journal before this one, in the same folder.
+    pub journal: String,
+    /// How many of its inputs count; the session began anew behind them.
+    pub inputs: u64,
+    /// State hash of the game behind them, sixteen hexadecimal digits.
+    pub hash: String,
 }
 
 /// How a session ended.
@@ -87,7 +107,7 @@ pub fn hash_text(hash: u64) -> String {
 
 /// One input as an array: steps, buttons, trigger, head, hand, and the trigger's last change where it is known.
 ///
-/// Buttons are a sum: 1 walk forward, 2 walk back, 4 Red, 8 Blue. Head and hand are `null` when not
+/// Buttons are a sum: 1 walk forward, 2 walk back, 4 Red, 8 Blue, 16 Red locked, 32 Blue locked. Head and hand are `null` when not
 /// tracked, else position, rotation (x, y, z, w) and, when measured, linear and angular velocity. The change is its age in
 /// seconds and the hand then; it is left out where there is none.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -114,6 +134,8 @@ impl From<&Input> for InputLine {
             input.walk_back,
             input.press_red,
             input.press_blue,
+            input.locked[0],
+            input.locked[1],
         ];
         let sum = buttons
             .iter()
@@ -146,6 +168,7 @@ impl From<&InputLine> for Input {
             walk_back: pressed(1),
             press_red: pressed(2),
             press_blue: pressed(3),
+            locked: [pressed(4), pressed(5)],
             steps: *steps,
             trigger_change: change.as_deref().map(|(age_s, hand)| TriggerChange {
                 age_s: *age_s,
@@ -193,18 +216,6 @@ impl From<&TrackedLine> for Tracked {
     }
 }
 
-/// The running check: FNV-1a, 32 bits, over all lines' contents so far.
-///
-/// It finds damage and hand edits by mistake; it is no signature.
-fn continue_check(check: u32, content: &str) -> u32 {
-    content.bytes().fold(check, |check, byte| {
-        (check ^ u32::from(byte)).wrapping_mul(0x0100_0193)
-    })
-}
-
-/// FNV-1a's offset basis.
-const FIRST_CHECK: u32 = 0x811c_9dc5;
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -232,13 +243,14 @@ mod tests {
             walk_back: false,
             press_red: false,
             press_blue: true,
+            locked: [false, true],
             steps: 8,
             trigger_change: None,
         };
         let text = serde_json::to_string(&InputLine::from(&input)).expect("plain numbers");
         let line: InputLine = serde_json::from_str(&text).expect("just written");
         assert_eq!(Input::from(&line), input);
-        assert!(text.starts_with("[8,9,0.30000000000000004,["), "{text}");
+        assert!(text.starts_with("[8,41,0.30000000000000004,["), "{text}");
         let changed = Input {
             trigger_change: Some(TriggerChange {
                 age_s: 0.1 / 3.0,
@@ -249,14 +261,5 @@ mod tests {
         let text = serde_json::to_string(&InputLine::from(&changed)).expect("plain numbers");
         let line: InputLine = serde_json::from_str(&text).expect("just written");
         assert_eq!(Input::from(&line), changed);
-    }
-
-    #[test]
-    fn continue_check_agrees_with_the_published_value() {
-        // FNV-1a test vectors by Landon Curt Noll: "foobar" hashes to 0xbf9cf968.
-        assert_eq!(
-            continue_check(continue_check(FIRST_CHECK, "foo"), "bar"),
-            0xbf9c_f968
-        );
     }
 }

@@ -28,7 +28,7 @@ pub fn replay(folder: &Path) -> Result<()> {
     let in_table = |problem: String| anyhow!("{} {problem}", motion_path.display());
     let mut comparison = Comparison::new(&table).map_err(in_table)?;
     check_inputs(&recording)?;
-    let conditions = recording.header.conditions.clone();
+    let conditions = recording.conditions.clone();
     let mut game = Game::new(conditions, recording.header.frames)
         .context("cannot set up the recorded alley")?;
     let mut started = Vec::new();
@@ -64,7 +64,7 @@ pub fn replay(folder: &Path) -> Result<()> {
 /// # Errors
 /// A sentence with what was changed.
 pub fn check_inputs(recording: &Recording) -> Result<()> {
-    let conditions = &recording.header.conditions;
+    let conditions = &recording.conditions;
     conditions.lobby.check()?;
     for button in Button::BOTH {
         conditions.of(button).check()?;

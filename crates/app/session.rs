@@ -82,7 +82,9 @@ impl Session {
             display: display_name(&setup.conditions).to_owned(),
             frames: setup.frames,
             scene: setup.scene,
-            conditions: setup.conditions,
+            conditions: Some(setup.conditions),
+            settings_digest: None,
+            continues: None,
         };
         let folder = OutputFolder::create(&setup.folder)?;
         let (journal, motion) = match begin(&folder, header) {
@@ -139,14 +141,6 @@ impl Session {
     /// As [`Session::frame`].
     pub fn device(&mut self, value: serde_json::Value) -> Result<()> {
         self.journal.device(value)
-    }
-
-    /// Hands everything recorded so far to the system, for who follows the journal while it grows.
-    ///
-    /// # Errors
-    /// As [`Session::frame`].
-    pub fn flush(&mut self) -> Result<()> {
-        self.journal.flush()
     }
 
     /// The game, as the last frame left it.

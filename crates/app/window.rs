@@ -203,7 +203,6 @@ impl Shell {
             stage.session.frame_watched(input, watch)?;
             stage.overlay.notice(stage.session.game());
         }
-        stage.session.flush()?;
         stage.simulated += Duration::from_secs_f64(f64::from(count) * self.frame_s);
         if device.is_done() || self.stop.load(std::sync::atomic::Ordering::Relaxed) {
             events.exit();

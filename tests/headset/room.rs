@@ -58,7 +58,8 @@ impl Room {
         let mut room = Self {
             remote: Remote::connect(service.port()).expect("the service listens"),
             journal,
-            game: Game::new(header.conditions, header.frames).expect("the program has it too"),
+            game: Game::new(header.conditions.expect("no study"), header.frames)
+                .expect("the program has it too"),
             packet,
             said: Vec::new(),
             input: Input::default(),

@@ -123,7 +123,7 @@ fn of_session(arguments: &CompareArguments) -> Result<Thrown> {
     if !watcher.heads.is_empty() {
         thrown.heads = watcher.heads;
     }
-    let conditions = recording.header.conditions;
+    let conditions = recording.conditions;
     thrown.buttons = Some([conditions.red, conditions.blue]);
     Ok(thrown)
 }
@@ -131,7 +131,7 @@ fn of_session(arguments: &CompareArguments) -> Result<Thrown> {
 /// Plays the inputs again until the throw is over.
 fn replay(recording: &Recording, watcher: &mut Watcher) -> Result<()> {
     let header = &recording.header;
-    let mut game = Game::new(header.conditions.clone(), header.frames)
+    let mut game = Game::new(recording.conditions.clone(), header.frames)
         .context("cannot set up the recorded alley")?;
     let mut recorded = recording.events.iter().peekable();
     for (index, input) in recording.inputs.iter().enumerate() {

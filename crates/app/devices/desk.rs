@@ -262,6 +262,7 @@ impl Desk {
             walk_back: self.held[Hold::Back as usize] || self.pad.back,
             press_red,
             press_blue,
+            locked: [false; 2],
             steps: self.steps,
             trigger_change: None,
         }

@@ -97,6 +97,7 @@ impl Participant {
             walk_back: walks && hand.back,
             press_red: chooses && choosing.red,
             press_blue: chooses && choosing.blue,
+            locked: [false; 2],
             steps: self.due(display_ns, period_s),
             trigger_change: change.and_then(|change| aged(change, display_ns)),
         }

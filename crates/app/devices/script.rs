@@ -322,6 +322,7 @@ impl Device for Script {
             walk_back,
             press_red: false,
             press_blue: false,
+            locked: [false; 2],
             steps: self.steps,
             trigger_change: None,
         }

@@ -8,7 +8,6 @@ use anyhow::{Result, anyhow};
 use serde_json::json;
 
 use super::Shared;
-use crate::session::Session;
 
 /// A frame that takes longer than this is a runtime that does not answer.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -85,7 +84,6 @@ impl Watch {
         );
         self.shared
             .note(json!({ "runtime_answers": !self.is_silent }))?;
-        self.shared.with(Session::flush)?;
         Ok(())
     }
 }

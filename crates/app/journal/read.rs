@@ -4,15 +4,18 @@ use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, bail};
-use game::Input;
+use experiment::journal::{Lines, Torn};
+use game::{Conditions, Input};
 
-use super::{End, Entry, FIRST_CHECK, Header, SCHEMA, continue_check};
+use super::{End, Entry, Header, settings};
 
-/// A whole journal.
+/// A whole session.
 #[derive(Debug)]
 pub struct Recording {
-    /// What the session was.
+    /// What the session was; of one that was resumed, its last part.
     pub header: Header,
+    /// The settings that it was played with.
+    pub conditions: Conditions,
     /// What the game consumed, frame by frame.
     pub inputs: Vec<Input>,
     /// What happened: the index of its input, and the event as recorded.
@@ -21,169 +24,146 @@ pub struct Recording {
     pub end: End,
 }
 
-/// Reads the journal at `path`.
+/// A journal as far as it goes: its session may be under way, or was killed.
+#[derive(Debug)]
+pub struct Story {
+    /// What the session was.
+    pub header: Header,
+    /// What the game consumed, frame by frame.
+    pub inputs: Vec<Input>,
+    /// What happened: the index of its input, and the event as recorded.
+    pub events: Vec<(usize, serde_json::Value)>,
+    /// What the experiment noted: how many inputs there were before it, and the note.
+    pub notes: Vec<(usize, serde_json::Value)>,
+    /// How it ended, if it did in order.
+    pub end: Option<End>,
+    /// The last line, where a crash cut it short.
+    pub torn: Option<Torn>,
+}
+
+/// Reads the journal of a session that was closed, and of one that was resumed the parts before it.
 ///
 /// # Errors
 /// When it cannot be read, is no journal, is of another version, was cut short or was changed.
 pub fn read(path: &Path) -> Result<Recording> {
+    let story = read_open(path)?;
+    let Story {
+        header,
+        inputs,
+        events,
+        end,
+        torn,
+        ..
+    } = story;
+    if let Some(torn) = torn {
+        bail!(
+            "{} line {}: the line is not complete: the recording was cut short and cannot be checked",
+            path.display(),
+            torn.line
+        );
+    }
+    let end = end.with_context(|| {
+        format!(
+            "{} line {}: the recording stops here, before its end: it was cut short and cannot be checked",
+            path.display(),
+            inputs.len() + events.len()
+        )
+    })?;
+    Ok(Recording {
+        conditions: settings::of(path, &header)?,
+        header,
+        inputs,
+        events,
+        end,
+    })
+}
+
+/// Puts what counts of the journals before `story` in front of it.
+fn prepend_earlier(path: &Path, story: &mut Story) -> Result<()> {
+    let Some(continues) = &story.header.continues else {
+        return Ok(());
+    };
+    let earlier = path.with_file_name(&continues.journal);
+    let before = read_open(&earlier)?;
+    let count = continues.inputs as usize;
+    if before.inputs.len() < count {
+        bail!(
+            "{} has {} inputs, but {} goes on behind input {count}: its end is missing",
+            earlier.display(),
+            before.inputs.len(),
+            path.display()
+        );
+    }
+    let shift = |(at, value): (usize, serde_json::Value)| (at + count, value);
+    let mut inputs = before.inputs;
+    inputs.truncate(count);
+    inputs.append(&mut story.inputs);
+    let mut events = before.events;
+    events.retain(|(at, _)| *at < count);
+    events.extend(std::mem::take(&mut story.events).into_iter().map(shift));
+    // What was answered or noted counts, wherever the play went on from.
+    let mut notes = before.notes;
+    notes.extend(std::mem::take(&mut story.notes).into_iter().map(shift));
+    (story.inputs, story.events, story.notes) = (inputs, events, notes);
+    Ok(())
+}
+
+/// Reads a journal as far as it goes, behind what counts of those that it continues.
+///
+/// # Errors
+/// When it cannot be read, is no journal, is of another version or was changed.
+pub fn read_open(path: &Path) -> Result<Story> {
     let bytes = fs::read(path).with_context(|| {
         format!(
             "cannot read {}: give the folder that `bowling play` printed at its end",
             path.display()
         )
     })?;
-    let text = String::from_utf8(bytes).map_err(|error| {
-        let line = error.as_bytes()[..error.utf8_error().valid_up_to()]
-            .iter()
-            .filter(|b| **b == b'\n')
-            .count()
-            + 1;
-        anyhow!(
-            "{} line {line}: not text, so this is not a journal or it was damaged",
-            path.display()
-        )
-    })?;
-    parse(&text).map_err(|(line, problem)| anyhow!("{} line {line}: {problem}", path.display()))
+    let mut lines = Lines::new(&bytes);
+    let mut story = tell(&mut lines)
+        .map_err(|problem| anyhow!("{} line {}: {problem}", path.display(), lines.number()))?;
+    prepend_earlier(path, &mut story)?;
+    Ok(story)
 }
 
-/// The line and what is wrong there.
-type Problem = (usize, String);
+/// The next line, understood.
+fn next_entry(lines: &mut Lines) -> Result<Option<Entry>> {
+    let Some(content) = lines.next_content()? else {
+        return Ok(None);
+    };
+    serde_json::from_str(&content)
+        .map(Some)
+        .map_err(|error| anyhow!("cannot be understood ({error})"))
+}
 
-fn parse(text: &str) -> Result<Recording, Problem> {
-    let mut lines = Lines {
-        text,
-        number: 0,
-        check: FIRST_CHECK,
+fn tell(lines: &mut Lines) -> Result<Story> {
+    let Some(Entry::Header(header)) = next_entry(lines)? else {
+        bail!("no header, so this is not a journal of this program");
     };
-    let header = match lines.next_entry()? {
-        Some(Entry::Header(header)) => *header,
-        _ => {
-            return Err((
-                1,
-                "no header, so this is not a journal of `bowling play`".to_owned(),
-            ));
+    let mut story = Story {
+        header: *header,
+        inputs: Vec::new(),
+        events: Vec::new(),
+        notes: Vec::new(),
+        end: None,
+        torn: None,
+    };
+    while let Some(entry) = next_entry(lines)? {
+        if story.end.is_some() {
+            bail!("something follows the end of the session");
         }
-    };
-    let mut inputs = Vec::new();
-    let mut events = Vec::new();
-    while let Some(entry) = lines.next_entry()? {
         match entry {
-            Entry::Header(_) => return Err((lines.number, "a second header".to_owned())),
-            Entry::Input(line) => inputs.push(Input::from(&line)),
-            Entry::Event(event) => match inputs.len().checked_sub(1) {
-                Some(input) => events.push((input, event)),
-                None => {
-                    return Err((lines.number, "an event before the first input".to_owned()));
-                }
+            Entry::Header(_) => bail!("a second header"),
+            Entry::Input(line) => story.inputs.push(Input::from(&line)),
+            Entry::Event(event) => match story.inputs.len().checked_sub(1) {
+                Some(input) => story.events.push((input, event)),
+                None => bail!("an event before the first input"),
             },
             Entry::Device(_) => {}
-            Entry::End(end) => {
-                if lines.next_entry()?.is_some() {
-                    return Err((
-                        lines.number,
-                        "something follows the end of the session".to_owned(),
-                    ));
-                }
-                return Ok(Recording {
-                    header,
-                    inputs,
-                    events,
-                    end,
-                });
-            }
+            Entry::Study(note) => story.notes.push((story.inputs.len(), note)),
+            Entry::End(end) => story.end = Some(end),
         }
     }
-    Err((
-        lines.number,
-        "the recording stops here, before its end: it was cut short and cannot be checked"
-            .to_owned(),
-    ))
-}
-
-struct Lines<'a> {
-    text: &'a str,
-    number: usize,
-    check: u32,
-}
-
-impl Lines<'_> {
-    fn next_entry(&mut self) -> Result<Option<Entry>, Problem> {
-        if self.text.is_empty() {
-            return Ok(None);
-        }
-        self.number += 1;
-        let Some((line, rest)) = self.text.split_once('\n') else {
-            let cut = "the line is not complete: the recording was cut short and cannot be checked";
-            // A file of one line that is no journal at all deserves the other sentence.
-            let foreign = self.number == 1 && split_line(self.text).is_none();
-            return Err((
-                self.number,
-                if foreign {
-                    no_journal()
-                } else {
-                    cut.to_owned()
-                },
-            ));
-        };
-        self.text = rest;
-        self.entry(line)
-            .map(Some)
-            .map_err(|problem| (self.number, problem.to_string()))
-    }
-
-    fn entry(&mut self, line: &str) -> Result<Entry> {
-        let Some((number, check, inner)) = split_line(line) else {
-            bail!(if self.number == 1 {
-                no_journal()
-            } else {
-                changed("is damaged")
-            });
-        };
-        let content = format!("{{{inner}");
-        let expected = continue_check(self.check, &content);
-        self.check = expected;
-        if self.number == 1 {
-            check_schema(&content)?;
-        }
-        if number != self.number.to_string() {
-            bail!(changed(&format!(
-                "says that it is line {number}: lines are missing or in another order"
-            )));
-        }
-        if check != format!("{expected:08x}") {
-            bail!(changed("was changed"));
-        }
-        serde_json::from_str(&content).map_err(|error| anyhow!("cannot be understood ({error})"))
-    }
-}
-
-fn no_journal() -> String {
-    "no header, so this is not a journal of `bowling play`".to_owned()
-}
-
-fn changed(how: &str) -> String {
-    format!("the line {how} after it was recorded, so the recording cannot be checked")
-}
-
-/// A journal of another schema would fail with a riddle in some field: name the version instead.
-fn check_schema(content: &str) -> Result<()> {
-    let value: serde_json::Value =
-        serde_json::from_str(content).map_err(|_| anyhow!(no_journal()))?;
-    match value["header"]["schema"].as_u64() {
-        None => bail!(no_journal()),
-        Some(schema) if schema == u64::from(SCHEMA) => Ok(()),
-        Some(schema) => bail!(
-            "the journal is of version {schema} and this program reads version {SCHEMA}: use the program version {}",
-            value["header"]["program"]
-        ),
-    }
-}
-
-/// Line number, check, and the content without its opening brace.
-fn split_line(line: &str) -> Option<(&str, &str, &str)> {
-    let (number, rest) = line
-        .strip_prefix("{\"line\":")?
-        .split_once(",\"check\":\"")?;
-    let (check, inner) = rest.split_once("\",")?;
-    Some((number, check, inner))
+    story.torn = lines.torn();
+    Ok(story)
 }

@@ -1,24 +1,19 @@
 //! Appends to a journal.
 
-use std::fs::{self, File, OpenOptions};
-use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::fs;
+use std::path::Path;
 
 use anyhow::{Context, Result};
+use experiment::journal::Appender;
 use game::{Event, Input};
 
-use super::{End, Entry, FIRST_CHECK, Header, InputLine, continue_check};
+use super::{End, Entry, Header, InputLine};
 
 /// A journal being written; append-only.
 #[derive(Debug)]
 pub struct Journal {
-    file: BufWriter<File>,
-    path: PathBuf,
-    line: u64,
-    check: u32,
+    lines: Appender<Entry>,
     inputs: u64,
-    /// Inputs between two flushes: a crash loses at most a second.
-    inputs_per_flush: u64,
 }
 
 impl Journal {
@@ -27,30 +22,17 @@ impl Journal {
     /// # Errors
     /// When the file exists or cannot be written.
     pub fn create(path: &Path, header: Header) -> Result<Self> {
-        let file = OpenOptions::new()
-            .append(true)
-            .create_new(true)
-            .open(path)
-            .with_context(|| format!("cannot create the journal {}", path.display()))?;
-        let mut journal = Journal {
-            file: BufWriter::new(file),
-            path: path.to_path_buf(),
-            line: 0,
-            check: FIRST_CHECK,
-            inputs: 0,
-            inputs_per_flush: (header.rate_hz as u64).max(1),
-        };
-        let begun = journal
-            .append(&Entry::Header(Box::new(header)))
-            .and_then(|()| journal.flush());
+        let mut lines = Appender::create(path)?;
+        let begun = lines
+            .append(Entry::Header(Box::new(header)))
+            .and_then(|()| lines.sync());
         if let Err(error) = begun {
-            // What is still buffered would fail again.
-            let _ = journal.file.into_parts();
+            drop(lines);
             // The error that is reported says why nothing can be done about a file that stays.
             let _ = fs::remove_file(path);
-            return Err(error);
+            return Err(error.into());
         }
-        Ok(journal)
+        Ok(Journal { lines, inputs: 0 })
     }
 
     /// Records what the game is about to consume.
@@ -58,13 +40,8 @@ impl Journal {
     /// # Errors
     /// When the disk is full or gone; the session must end then.
     pub fn input(&mut self, input: &Input) -> Result<()> {
-        self.append(&Entry::Input(InputLine::from(input)))?;
         self.inputs += 1;
-        if self.inputs.is_multiple_of(self.inputs_per_flush) {
-            self.flush()
-        } else {
-            Ok(())
-        }
+        self.append(Entry::Input(InputLine::from(input)))
     }
 
     /// Records what happened in the frame of the last input.
@@ -73,7 +50,7 @@ impl Journal {
     /// As [`Journal::input`].
     pub fn event(&mut self, event: &Event) -> Result<()> {
         let value = serde_json::to_value(event).context("an event cannot be written as JSON")?;
-        self.append(&Entry::Event(value))
+        self.append(Entry::Event(value))
     }
 
     /// Records what the device said of itself.
@@ -81,7 +58,16 @@ impl Journal {
     /// # Errors
     /// As [`Journal::input`].
     pub fn device(&mut self, value: serde_json::Value) -> Result<()> {
-        self.append(&Entry::Device(value))
+        self.append(Entry::Device(value))
+    }
+
+    /// Records what the experiment noted, and waits until it outlasts a power cut.
+    ///
+    /// # Errors
+    /// As [`Journal::input`].
+    pub fn study(&mut self, value: serde_json::Value) -> Result<()> {
+        self.append(Entry::Study(value))?;
+        Ok(self.lines.sync()?)
     }
 
     /// Closes the journal; `end.inputs` is filled in here.
@@ -90,42 +76,11 @@ impl Journal {
     /// As [`Journal::input`].
     pub fn end(mut self, mut end: End) -> Result<()> {
         end.inputs = self.inputs;
-        self.append(&Entry::End(end))?;
-        self.flush()?;
-        self.file
-            .get_ref()
-            .sync_all()
-            .with_context(|| self.failure())
+        self.append(Entry::End(end))?;
+        Ok(self.lines.sync()?)
     }
 
-    fn append(&mut self, entry: &Entry) -> Result<()> {
-        let content =
-            serde_json::to_string(entry).context("a journal line cannot be written as JSON")?;
-        self.line += 1;
-        self.check = continue_check(self.check, &content);
-        let inner = content
-            .strip_prefix('{')
-            .expect("an entry is a JSON object");
-        writeln!(
-            self.file,
-            "{{\"line\":{},\"check\":\"{:08x}\",{inner}",
-            self.line, self.check
-        )
-        .with_context(|| self.failure())
-    }
-
-    /// Hands everything recorded so far to the system, where a crash of this program cannot touch it.
-    ///
-    /// # Errors
-    /// As [`Journal::input`].
-    pub fn flush(&mut self) -> Result<()> {
-        self.file.flush().with_context(|| self.failure())
-    }
-
-    fn failure(&self) -> String {
-        format!(
-            "cannot write the journal {}: is the disk full?",
-            self.path.display()
-        )
+    fn append(&mut self, entry: Entry) -> Result<()> {
+        Ok(self.lines.append(entry)?)
     }
 }

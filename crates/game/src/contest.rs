@@ -22,8 +22,8 @@ impl Game {
             .and_then(|button| self.sheet(button).next_delivery())
     }
 
-    /// Acts on presses: starts a game, or asks for a second press while one is played.
-    pub(crate) fn press(&mut self) {
+    /// Acts on presses: starts a game, or asks for a second press while one is played; refuses those of locked buttons.
+    pub(crate) fn press(&mut self, locked: [bool; 2]) {
         if self
             .pending
             .is_some_and(|pending| self.steps > pending.until)
@@ -31,6 +31,10 @@ impl Game {
             self.pending = None;
         }
         for button in std::mem::take(&mut self.pressed) {
+            if locked[button as usize] {
+                self.record(EventKind::Refused { button });
+                continue;
+            }
             self.record(EventKind::Pressed { button });
             let is_confirmed = self.pending.is_some_and(|pending| pending.button == button);
             if self.playing.is_none() || is_confirmed {

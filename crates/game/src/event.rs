@@ -81,6 +81,11 @@ pub enum EventKind {
         /// Which.
         button: Button,
     },
+    /// A button was pressed while it was locked: nothing happens.
+    Refused {
+        /// Which.
+        button: Button,
+    },
     /// A game is being played: the button asks for a second press.
     ConfirmAsked {
         /// Which button was pressed.

@@ -97,6 +97,9 @@ pub struct Input {
     pub press_red: bool,
     /// The key that stands for the Blue button in the room.
     pub press_blue: bool,
+    /// Whether presses of Red and of Blue, in the room or by key, are refused in this frame.
+    #[serde(default)]
+    pub locked: [bool; 2],
     /// Physics steps that this frame advances.
     pub steps: u32,
     /// When the trigger last changed, if it did since the frame before and the device measured when.

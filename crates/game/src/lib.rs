@@ -214,7 +214,7 @@ impl Game {
         self.feel();
         self.grip(input, let_go);
         self.press_keys(input);
-        self.press();
+        self.press(input.locked);
     }
 
     /// Adds a fact of this instant.

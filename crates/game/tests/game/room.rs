@@ -113,6 +113,32 @@ fn a_confirmation_expires() {
 }
 
 #[test]
+fn a_locked_button_is_refused_by_hand_and_by_key_and_the_other_is_not() {
+    let mut player = Player::new(conditions(&[]), 1);
+    player.input.locked = [true, false];
+    let top = player.game.observe().buttons[0].top;
+    player.reach(top + DVec3::Y * 0.1);
+    player.reach(top + DVec3::Y * 0.02);
+    player.reach(top + DVec3::Y * 0.2);
+    player.key(Button::Red);
+    let refused = |player: &Player| {
+        player.count(|kind| {
+            let button = Button::Red;
+            *kind == EventKind::Refused { button }
+        })
+    };
+    assert_eq!((refused(&player), player.game.playing()), (2, None));
+    player.key(Button::Blue);
+    assert_eq!(player.game.playing(), Some(Button::Blue));
+    // During a game too: no second press is asked for.
+    player.key(Button::Red);
+    player.key(Button::Red);
+    assert_eq!(refused(&player), 4);
+    assert_eq!(player.game.playing(), Some(Button::Blue));
+    assert_eq!(player.game.confirming(), None);
+}
+
+#[test]
 fn a_key_that_is_kept_down_presses_once() {
     let mut player = Player::new(conditions(&[]), 1);
     player.input.press_blue = true;
