@@ -10,3 +10,4 @@ pub mod journal;
 pub mod plan;
 pub mod questionnaire;
 pub mod random;
+pub mod study;

@@ -269,3 +269,6 @@ impl Row {
         (button == Button::Red) == self.arrangement.red_is_high()
     }
 }
+
+#[cfg(test)]
+pub(crate) use study_file::tests::about as about_for_tests;

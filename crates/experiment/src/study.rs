@@ -1,0 +1,449 @@
+//! A study's folder: what was decided, who has which slot, and where data go.
+//!
+//! `plan/` is for the experimenter's eyes: allocation, who has which slot, consents, logs. `data/` can be shared: nothing in it says
+//! which condition a button meant. What the plan decided is fixed when the study is made, and `plan/SHA256SUMS` shows a changed byte.
+
+mod erase;
+mod ids;
+mod lock;
+mod register;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::consent::{ConsentError, ConsentForm};
+use crate::digest;
+use crate::files::{self, FileError};
+use crate::plan::{Plan, PlanError, Row, allocation_csv};
+use crate::questionnaire::{Questionnaire, QuestionnaireError};
+use crate::random::SplitMix64;
+
+pub use erase::Erased;
+pub use ids::{ParticipantId, fresh_id};
+pub use lock::Lock;
+pub use register::Assignment;
+
+/// Files of `plan/` that never change.
+const FIXED: [&str; 5] = [
+    "study.toml",
+    "allocation.csv",
+    "questionnaire.toml",
+    "consent.md",
+    "salt",
+];
+const SUMS: &str = "SHA256SUMS";
+
+/// An opened study.
+#[derive(Debug, Clone)]
+pub struct Study {
+    root: PathBuf,
+    plan: Plan,
+    rows: Vec<Row>,
+    questionnaire: Questionnaire,
+    consent_form: ConsentForm,
+    salt: String,
+}
+
+/// Why something with a study cannot be done.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyError {
+    /// A file or folder cannot be read or written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// The plan cannot be used.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// The questionnaire cannot be used.
+    #[error(transparent)]
+    Questionnaire(#[from] QuestionnaireError),
+    /// The consent form cannot be used.
+    #[error(transparent)]
+    Consent(#[from] ConsentError),
+    /// There is no study in the folder.
+    #[error("{} is no study: it has no plan/study.toml; make one with `bowling study new`", .0.display())]
+    NotAStudy(PathBuf),
+    /// A new study needs a folder of its own.
+    #[error("{} is not empty, and nothing in it is overwritten: choose a new or empty folder", .0.display())]
+    NotEmpty(PathBuf),
+    /// A file that never changes was changed.
+    #[error("{} was changed since the study was made: restore it from a backup, or make a new study for a new plan", .0.display())]
+    Changed(PathBuf),
+    /// Another program has the study.
+    #[error("the study in {} is in use by another program (process {holder}): wait until it has ended, or end it", root.display())]
+    InUse {
+        /// The study's folder.
+        root: PathBuf,
+        /// Number of that process, as it wrote it down.
+        holder: String,
+    },
+    /// No slot is free.
+    #[error(
+        "all {0} slots of the plan are taken: make a study with more participants, or erase one who withdrew"
+    )]
+    Full(u32),
+    /// There is no such participant.
+    #[error("no participant of this study is called {0}: `bowling study status` lists them")]
+    Unknown(String),
+    /// A text that is no id.
+    #[error("{0:?} is no participant's id: it looks like sub-p7k2")]
+    NotAnId(String),
+    /// A register has a line that is none.
+    #[error("{} line {line} is not as this program writes it: restore the file from a backup", path.display())]
+    Register {
+        /// Which file.
+        path: PathBuf,
+        /// Line, from 1.
+        line: usize,
+    },
+    /// Somebody has to be named.
+    #[error(
+        "{0}: say who it is with a word or name, without commas and line breaks, and without a participant's id"
+    )]
+    Who(&'static str),
+    /// Something of an erased participant is left in files that this program did not write.
+    #[error(
+        "{id} is still named in {}: this program did not write these files and does not edit them, so remove it there and erase again",
+        paths(files)
+    )]
+    Traces {
+        /// The participant.
+        id: ParticipantId,
+        /// The files.
+        files: Vec<PathBuf>,
+    },
+}
+
+fn paths(files: &[PathBuf]) -> String {
+    let names: Vec<String> = files
+        .iter()
+        .map(|path| path.display().to_string())
+        .collect();
+    names.join(", ")
+}
+
+impl Study {
+    /// Makes a study in `root`, which is new or empty. `consent` is the form with its fields filled in as far as they are known;
+    /// `entropy` is 64 bits that nobody can guess.
+    ///
+    /// # Errors
+    /// When the folder holds anything, cannot be written, or a text cannot be used; nothing is left behind then.
+    pub fn create(
+        root: &Path,
+        plan: &Plan,
+        rows: &[Row],
+        questionnaire: &str,
+        consent: &str,
+        entropy: u64,
+    ) -> Result<Study, StudyError> {
+        // What cannot be used later must not begin.
+        Questionnaire::parse(questionnaire, Path::new("the questionnaire"))?;
+        ConsentForm::parse(consent.to_owned(), Path::new("the consent form"))?;
+        let csv = allocation_csv(&plan.design(), rows);
+        plan.parse_allocation(&csv)?;
+        let is_new = !root.exists();
+        if !is_new
+            && fs::read_dir(root)
+                .map_err(FileError::at("list", root))?
+                .next()
+                .is_some()
+        {
+            return Err(StudyError::NotEmpty(root.to_path_buf()));
+        }
+        let salt = format!("{:016x}", SplitMix64::new(entropy).next_u64());
+        let texts = [
+            plan.to_toml(),
+            csv,
+            questionnaire.to_owned(),
+            consent.to_owned(),
+            salt,
+        ];
+        if let Err(error) = write_fixed(root, &texts) {
+            // Only what was just made is in the folder.
+            let made = if is_new {
+                vec![root.to_path_buf()]
+            } else {
+                vec![root.join("plan"), root.join("data")]
+            };
+            for folder in made {
+                files::remove(&folder).ok();
+            }
+            return Err(error.into());
+        }
+        Study::open(root)
+    }
+
+    /// Opens a study for reading; what changes it asks for a [`Lock`].
+    ///
+    /// # Errors
+    /// When there is none, another version made it, or a file that never changes was changed.
+    pub fn open(root: &Path) -> Result<Study, StudyError> {
+        let folder = root.join("plan");
+        if !folder.join("study.toml").is_file() {
+            return Err(StudyError::NotAStudy(root.to_path_buf()));
+        }
+        let texts = read_fixed(&folder)?;
+        let [plan, allocation, questionnaire, consent, salt] = texts;
+        let plan = Plan::parse(&plan, &folder.join(FIXED[0]))?;
+        Ok(Study {
+            rows: plan.parse_allocation(&allocation)?,
+            questionnaire: Questionnaire::parse(&questionnaire, &folder.join(FIXED[2]))?,
+            consent_form: ConsentForm::parse(consent, &folder.join(FIXED[3]))?,
+            root: root.to_path_buf(),
+            plan,
+            salt,
+        })
+    }
+
+    /// The study's folder.
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// What can be shared: a dataset in BIDS.
+    pub fn data_folder(&self) -> PathBuf {
+        self.root.join("data")
+    }
+
+    /// What cannot: allocation, register, consents, logs.
+    pub fn plan_folder(&self) -> PathBuf {
+        self.root.join("plan")
+    }
+
+    /// Where a session's journal lies.
+    pub fn journal_folder(&self, participant: &ParticipantId, session: u32) -> PathBuf {
+        let folder = self.data_folder().join("sourcedata");
+        folder
+            .join(participant.to_string())
+            .join(format!("ses-{session:02}"))
+    }
+
+    /// What was decided.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// What is asked.
+    pub fn questionnaire(&self) -> &Questionnaire {
+        &self.questionnaire
+    }
+
+    /// What participants agree to.
+    pub fn consent_form(&self) -> &ConsentForm {
+        &self.consent_form
+    }
+
+    /// The row of a slot, for the program that runs the session and tells nobody. Whoever wants to read it uses [`Study::unblind`].
+    ///
+    /// # Panics
+    /// When the plan has no such slot.
+    pub fn row(&self, slot: u32) -> &Row {
+        &self.rows[slot as usize - 1]
+    }
+
+    /// Every row, for counting the balance; see [`Study::row`].
+    pub fn rows(&self) -> &[Row] {
+        &self.rows
+    }
+
+    /// What a session records of a resolved configuration: SHA-256 over the study's salt, the session, the button and the text.
+    ///
+    /// The session is part of it, or equal digests would tell which participants met the same condition.
+    pub fn config_digest(
+        &self,
+        participant: &ParticipantId,
+        session: u32,
+        button: crate::plan::Button,
+        config: &str,
+    ) -> String {
+        digest::salted(
+            &self.salt,
+            &format!("\n{participant} {session} {button}\n{config}"),
+        )
+    }
+
+    /// Keeps a resolved configuration with the allocation, once however many sessions use it; returns its file.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn keep_config(&self, lock: &Lock, config: &str) -> Result<PathBuf, StudyError> {
+        lock.belongs_to(self);
+        let folder = self.plan_folder().join("configs");
+        files::create_folder(&folder)?;
+        let path = folder.join(format!("{}.toml", digest::sha256(config.as_bytes())));
+        if !path.exists() {
+            files::write(&path, config.as_bytes())?;
+        }
+        Ok(path)
+    }
+
+    /// What a tombstone and nothing else says of a participant.
+    fn id_hash(&self, id: &ParticipantId) -> String {
+        digest::salted(&self.salt, &format!("\n{id}"))
+    }
+}
+
+fn write_fixed(root: &Path, texts: &[String; 5]) -> Result<(), FileError> {
+    files::create_folder(root)?;
+    let folder = root.join("plan");
+    files::create_folder(&folder)?;
+    files::create_folder(&root.join("data"))?;
+    let mut sums = String::new();
+    for (name, text) in FIXED.iter().zip(texts) {
+        files::write(&folder.join(name), text.as_bytes())?;
+        // As `sha256sum` writes and checks it.
+        sums += &format!("{}  {name}\n", digest::sha256(text.as_bytes()));
+    }
+    files::write(&folder.join(SUMS), sums.as_bytes())
+}
+
+fn read_fixed(folder: &Path) -> Result<[String; 5], StudyError> {
+    let mut texts: [String; 5] = Default::default();
+    let mut sums = String::new();
+    for (name, text) in FIXED.iter().zip(&mut texts) {
+        let path = folder.join(name);
+        let bytes = fs::read(&path).map_err(FileError::at("read", &path))?;
+        sums += &format!("{}  {name}\n", digest::sha256(&bytes));
+        *text = String::from_utf8(bytes).map_err(|_| StudyError::Changed(path))?;
+    }
+    let path = folder.join(SUMS);
+    let kept = fs::read(&path).map_err(FileError::at("read", &path))?;
+    if kept == sums.as_bytes() {
+        return Ok(texts);
+    }
+    let kept = String::from_utf8_lossy(&kept);
+    let changed = FIXED
+        .iter()
+        .zip(sums.lines())
+        .find(|(_, line)| !kept.lines().any(|kept| kept == *line));
+    let name = changed.map_or(SUMS, |(name, _)| name);
+    Err(StudyError::Changed(folder.join(name)))
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::plan::{Button, Scheme, SessionRules};
+    use std::os::unix::fs::PermissionsExt;
+
+    pub(crate) const QUESTIONNAIRE: &str = include_str!("../../../config/questionnaire.toml");
+    pub(crate) const CONSENT: &str = include_str!("../../../config/consent.md");
+
+    pub(crate) fn create(root: &Path, subjects: u32) -> Study {
+        create_with(root, subjects, SessionRules::default()).unwrap()
+    }
+
+    pub(crate) fn create_with(
+        root: &Path,
+        subjects: u32,
+        rules: SessionRules,
+    ) -> Result<Study, StudyError> {
+        let about = crate::plan::about_for_tests();
+        let fields = [
+            ("laboratory", about.laboratory.as_str()),
+            ("contact", &about.contact),
+            ("retention_until", &about.retention_until),
+            ("withdrawal_until", &about.withdrawal_until),
+        ];
+        let form = ConsentForm::parse(CONSENT.to_owned(), Path::new("consent.md"))
+            .unwrap()
+            .filled(&fields);
+        let (plan, rows) =
+            Plan::new(&Scheme::Table2, subjects, 1997, about.clone(), rules).unwrap();
+        Study::create(root, &plan, &rows, QUESTIONNAIRE, &form.text, 7)
+    }
+
+    #[test]
+    fn create_makes_what_open_reads() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path().join("a/study");
+        let made = create(&root, 18);
+        let opened = Study::open(&root).unwrap();
+        assert_eq!((opened.plan(), opened.rows()), (made.plan(), made.rows()));
+        assert_eq!(opened.consent_form().unfilled(), Vec::<String>::new());
+        for path in files::list(&root).unwrap() {
+            let mode = fs::metadata(&path).unwrap().permissions().mode();
+            assert_eq!(mode & 0o777, 0o600, "{}", path.display());
+        }
+        let mode = fs::metadata(root.join("plan"))
+            .unwrap()
+            .permissions()
+            .mode();
+        assert_eq!(mode & 0o777, 0o700);
+        let error = create_with(&root, 18, SessionRules::default())
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains("nothing in it is overwritten"), "{error}");
+    }
+
+    #[test]
+    fn open_names_every_changed_byte() {
+        let folder = tempfile::tempdir().unwrap();
+        create(folder.path(), 18);
+        for name in FIXED.iter().chain([&SUMS]) {
+            let path = folder.path().join("plan").join(name);
+            let whole = fs::read(&path).unwrap();
+            // Every byte of the plan, and a seventh of the others: prime to any line length.
+            let stride = if *name == "study.toml" { 1 } else { 7 };
+            for at in (0..whole.len()).step_by(stride) {
+                let mut bytes = whole.clone();
+                bytes[at] ^= 1 << (at % 8);
+                fs::write(&path, &bytes).unwrap();
+                let error = Study::open(folder.path()).unwrap_err().to_string();
+                assert!(
+                    error.contains("was changed since the study was made"),
+                    "{name} {at}: {error}"
+                );
+            }
+            fs::write(&path, &whole).unwrap();
+        }
+        Study::open(folder.path()).unwrap();
+        fs::remove_file(folder.path().join("plan/salt")).unwrap();
+        let error = Study::open(folder.path()).unwrap_err().to_string();
+        assert!(
+            error.starts_with("cannot read ") && error.contains("salt"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn open_refuses_folders_that_are_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let error = Study::open(folder.path()).unwrap_err().to_string();
+        assert!(error.contains("is no study"), "{error}");
+        let error = Study::open(&folder.path().join("none"))
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains("is no study"), "{error}");
+    }
+
+    #[test]
+    fn create_that_fails_leaves_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path().join("file/study");
+        fs::write(
+            folder.path().join("file"),
+            "a file where a folder should be",
+        )
+        .unwrap();
+        create_with(&root, 18, SessionRules::default()).unwrap_err();
+        assert_eq!(
+            files::list(folder.path()).unwrap(),
+            [folder.path().join("file")]
+        );
+    }
+
+    #[test]
+    fn config_digest_does_not_tell_who_met_the_same() {
+        let folder = tempfile::tempdir().unwrap();
+        let study = create(folder.path(), 18);
+        let [a, b] = ["sub-p7k2", "sub-q4zx"].map(|id| ParticipantId::parse(id).unwrap());
+        let digest = |id, button| study.config_digest(id, 1, button, "elasticity = 0.7");
+        assert_eq!(digest(&a, Button::Red), digest(&a, Button::Red));
+        assert_ne!(digest(&a, Button::Red), digest(&b, Button::Red));
+        assert_ne!(digest(&a, Button::Red), digest(&a, Button::Blue));
+        let lock = study.lock().unwrap();
+        let first = study.keep_config(&lock, "x = 1").unwrap();
+        assert_eq!(study.keep_config(&lock, "x = 1").unwrap(), first);
+        assert_eq!(fs::read_to_string(first).unwrap(), "x = 1");
+    }
+}
