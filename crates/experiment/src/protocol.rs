@@ -215,8 +215,8 @@ impl Protocol {
             (_, Stop) => Place::Stopped,
             (Place::Training { left: 0 | 1 }, PracticeThrow) => Place::Waiting(1),
             (Place::Training { left }, PracticeThrow) => Place::Training { left: left - 1 },
-            // Between the games anybody may throw; nothing counts.
-            (Place::Waiting(game), PracticeThrow) => Place::Waiting(game),
+            // Whoever waits may throw; nothing counts.
+            (Place::Waiting(_) | Place::Form(_) | Place::Debriefing, PracticeThrow) => self.place,
             (Place::Waiting(game), GameStarted(button)) => {
                 self.played.push(button);
                 Place::Playing(game)
@@ -347,7 +347,6 @@ mod tests {
         for happening in [
             Happening::GameOver,
             Happening::GameStarted(Button::Red),
-            Happening::PracticeThrow,
             Happening::Debriefed,
         ] {
             assert!(protocol.happen(happening).is_err(), "{happening:?}");
