@@ -5,7 +5,6 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use experiment::journal::Appender;
-use experiment::protocol::Note;
 use game::{Event, Input};
 
 use super::{End, Entry, Header, InputLine};
@@ -36,13 +35,6 @@ impl Journal {
         Ok(Journal { lines, inputs: 0 })
     }
 
-    /// The same journal, whose session has consumed `inputs` inputs in earlier ones.
-    #[must_use]
-    pub fn behind(mut self, inputs: u64) -> Self {
-        self.inputs = inputs;
-        self
-    }
-
     /// Records what the game is about to consume.
     ///
     /// # Errors
@@ -69,14 +61,13 @@ impl Journal {
         self.append(Entry::Device(value))
     }
 
-    /// Records what the experiment noted, and has it outlast a power cut as soon as the disk can.
+    /// Records what the experiment noted, and waits until it outlasts a power cut.
     ///
     /// # Errors
     /// As [`Journal::input`].
-    pub fn study(&mut self, note: &Note) -> Result<()> {
-        let value = serde_json::to_value(note).context("a note cannot be written as JSON")?;
+    pub fn study(&mut self, value: serde_json::Value) -> Result<()> {
         self.append(Entry::Study(value))?;
-        Ok(self.lines.persist()?)
+        Ok(self.lines.sync()?)
     }
 
     /// Closes the journal; `end.inputs` is filled in here.

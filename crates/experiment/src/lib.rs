@@ -3,12 +3,12 @@
 //! Knows neither balls nor headsets: the app hands over plain numbers and rows, and the times at which they happened.
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
+pub mod analysis;
 pub mod consent;
 pub mod digest;
 pub mod files;
 pub mod journal;
 pub mod plan;
-pub mod protocol;
 pub mod questionnaire;
 pub mod random;
 pub mod study;
