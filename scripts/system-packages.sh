@@ -8,8 +8,9 @@
 build_packages=(
   "gcc|links the program"
   "libc6-dev|links the program"
-  "pkg-config|finds libudev"
+  "pkg-config|finds libudev and libasound"
   "libudev-dev|gamepads (gilrs)"
+  "libasound2-dev|sound (kira)"
 )
 graphics_packages=(
   "libvulkan1|Vulkan loader"

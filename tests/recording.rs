@@ -7,7 +7,7 @@ use bowling_app::devices::script::Velocities;
 use bowling_app::journal::{self, Journal, Recording};
 use bowling_app::pictures::Wanted;
 use bowling_app::rehearsal::rehearse;
-use bowling_app::session::{Session, Setup};
+use bowling_app::session::{Keep, Session, Setup};
 use game::{Button, Conditions, Event, Input, Tracked};
 use glam::{DQuat, DVec3};
 use physics::Pose;
@@ -343,7 +343,7 @@ fn poses_that_are_no_numbers_are_refused_and_counted_in_the_journal() {
         seed: 1,
         device: "script",
         rate_hz: 90.0,
-        folder: folder.clone(),
+        keep: Keep::Recording(folder.clone()),
     };
     let mut session = Session::start(setup).expect("a session");
     let good = Tracked::at(Pose {

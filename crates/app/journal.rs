@@ -88,7 +88,7 @@ pub struct Continues {
 pub struct End {
     /// State hash of the game, sixteen hexadecimal digits.
     pub hash: String,
-    /// Input lines of the whole journal.
+    /// Inputs of the whole session, those that count of earlier journals included.
     pub inputs: u64,
     /// False when somebody ended the session before both games were over.
     pub complete: bool,

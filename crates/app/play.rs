@@ -17,7 +17,7 @@ use crate::headset;
 use crate::output;
 use crate::pictures::{Painter, Wanted};
 use crate::rehearsal;
-use crate::session::{Session, Setup, Summary};
+use crate::session::{Keep, Session, Setup, Summary};
 use crate::window;
 
 /// Scene when none is asked for.
@@ -53,7 +53,7 @@ pub fn play(arguments: &PlayArguments, root: &Path) -> Result<()> {
             Choice::DeskWindow => "desk",
             Choice::ScriptWindow | Choice::ScriptOffscreen => "script",
         },
-        folder,
+        keep: Keep::Recording(folder),
     };
     let wanted = Wanted {
         video: !arguments.no_video,

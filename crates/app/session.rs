@@ -1,24 +1,29 @@
-//! One session, whatever the device: boundary, journal, game, motion table, film; files at the end.
+//! One session, whatever the device: boundary, journal, game, and what is kept of it; files at the end.
 //!
 //! A loop calls [`Session::frame`] once per displayed frame and [`Session::finish`] when it is over,
 //! also when somebody interrupts it: the folder is in order then, up to that frame.
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
+pub mod course;
+mod recording;
 
-use anyhow::{Context, Result};
-use game::{Button, Conditions, DisplayProfileName, EventKind, Game, Input};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use anyhow::{Context, Result, bail};
+use experiment::protocol::{Note, Place, Who};
+use experiment::questionnaire::{Act, Form};
+use game::{Button, Conditions, DisplayProfileName, Event, EventKind, Game, Input};
 use physics::{Stopwatch, Unwatched};
 
 use crate::boundary::{Boundary, Refused};
-use crate::journal::{self, End, Header, Journal};
-use crate::motion;
-use crate::output::{Draft, JOURNAL, MOTION, OutputFolder};
-use crate::pictures::film::{Camera, Film};
+use crate::journal::{self, Continues, End, Header, Journal, Story};
 use crate::pictures::{Painter, Wanted};
+use course::Course;
+pub use recording::sheet_text;
+use recording::{Album, Recording};
 
 /// How a session is set up.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Setup {
     /// Resolved settings.
     pub conditions: Conditions,
@@ -32,8 +37,32 @@ pub struct Setup {
     pub device: &'static str,
     /// Frames per second of the device [Hz].
     pub rate_hz: f64,
-    /// The folder for the recording.
-    pub folder: PathBuf,
+    /// Where it is kept, and as what.
+    pub keep: Keep,
+}
+
+/// Where a session is kept, and as what.
+#[derive(Debug)]
+pub enum Keep {
+    /// As a recording in a folder of its own, with motion table, score sheets and pictures.
+    Recording(PathBuf),
+    /// As a part of a study: a journal alone, from which the study's tables are made.
+    Study(Box<Seat>),
+}
+
+/// A session's place in a study.
+#[derive(Debug)]
+pub struct Seat {
+    /// The journal, which must not exist.
+    pub journal: PathBuf,
+    /// The salted digest of the settings.
+    pub settings_digest: String,
+    /// What the plan says of the session.
+    pub plan: course::Plan,
+    /// What is noted before anything else.
+    pub notes: Vec<Note>,
+    /// The journals so far of a session that was broken off, up to where it is taken up.
+    pub before: Option<(Continues, Story)>,
 }
 
 /// A session under way.
@@ -41,9 +70,11 @@ pub struct Session {
     game: Game,
     boundary: Boundary,
     journal: Journal,
-    motion: Draft,
-    camera: Camera,
-    folder: OutputFolder,
+    path: PathBuf,
+    /// Where time is not simulated: when the program began, and how much time had passed before [s].
+    clock: Option<(Instant, f64)>,
+    recording: Option<Recording>,
+    course: Option<Course>,
     started: Vec<Button>,
     games_over: u32,
 }
@@ -64,14 +95,14 @@ pub struct Summary {
 }
 
 impl Session {
-    /// Sets up the game, then opens the folder with the journal in it.
+    /// Sets up the game, then opens the journal.
     ///
     /// # Errors
     /// When the settings make no game, or the folder cannot be used; nothing is left behind then.
     pub fn start(setup: Setup) -> Result<Self> {
         let game =
             Game::new(setup.conditions.clone(), setup.frames).context("cannot set up the alley")?;
-        let camera = Camera::new(&game);
+        let is_script = setup.device == "script";
         let header = Header {
             schema: journal::SCHEMA,
             program: env!("CARGO_PKG_VERSION").to_owned(),
@@ -82,28 +113,75 @@ impl Session {
             display: display_name(&setup.conditions).to_owned(),
             frames: setup.frames,
             scene: setup.scene,
-            conditions: Some(setup.conditions),
+            conditions: None,
             settings_digest: None,
             continues: None,
         };
-        let folder = OutputFolder::create(&setup.folder)?;
-        let (journal, motion) = match begin(&folder, header) {
-            Ok(files) => files,
-            Err(error) => {
-                folder.abandon();
-                return Err(error);
+        match setup.keep {
+            Keep::Recording(path) => {
+                let conditions = Some(setup.conditions);
+                let header = Header {
+                    conditions,
+                    ..header
+                };
+                let (recording, journal) = Recording::begin(&path, header, &game)?;
+                let mut session = Session::new(game, journal, path, is_script);
+                session.recording = Some(recording);
+                Ok(session)
             }
-        };
-        Ok(Session {
+            Keep::Study(seat) => Session::sit_down(*seat, header, game, is_script),
+        }
+    }
+
+    fn new(game: Game, journal: Journal, path: PathBuf, is_script: bool) -> Self {
+        Session {
+            clock: (!is_script).then(|| (Instant::now(), game.time())),
             game,
             boundary: Boundary::default(),
             journal,
-            motion,
-            camera,
-            folder,
+            path,
+            recording: None,
+            course: None,
             started: Vec::new(),
             games_over: 0,
-        })
+        }
+    }
+
+    /// Begins, or takes up, a study's session.
+    fn sit_down(seat: Seat, header: Header, mut game: Game, is_script: bool) -> Result<Self> {
+        let mut course = Course::new(seat.plan);
+        let header = Header {
+            settings_digest: Some(seat.settings_digest),
+            continues: seat.before.as_ref().map(|(continues, _)| continues.clone()),
+            ..header
+        };
+        let mut started = Vec::new();
+        let mut games_over = 0;
+        if let Some((continues, story)) = &seat.before {
+            for input in &story.inputs {
+                game.step(input);
+                count(game.events(), &mut started, &mut games_over);
+            }
+            let hash = journal::hash_text(game.hash());
+            if hash != continues.hash {
+                bail!(
+                    "{}: playing it again leads to state {hash} and not to {}: it was made by another version of the program",
+                    continues.journal,
+                    continues.hash
+                );
+            }
+            course.catch_up(story)?;
+        }
+        let inputs = seat.before.map_or(0, |(_, story)| story.inputs.len());
+        let journal = Journal::create(&seat.journal, header)?.behind(inputs as u64);
+        let path = seat.journal.parent().unwrap_or(Path::new("")).to_owned();
+        let mut session = Session::new(game, journal, path, is_script);
+        (session.started, session.games_over) = (started, games_over);
+        session.course = Some(course);
+        for note in seat.notes {
+            session.journal.study(&note)?;
+        }
+        Ok(session)
     }
 
     /// One displayed frame: checks the input, records it, and only then lets the game consume it.
@@ -119,20 +197,102 @@ impl Session {
     /// # Errors
     /// As [`Session::frame`].
     pub fn frame_watched(&mut self, input: Input, watch: &mut impl Stopwatch) -> Result<()> {
-        let input = self.boundary.admit(input);
+        let mut input = self.boundary.admit(input);
+        if let Some(course) = &self.course {
+            input.locked = course.protocol().locked();
+        }
         self.journal.input(&input)?;
         self.game.step_watched(&input, watch);
+        count(self.game.events(), &mut self.started, &mut self.games_over);
         for event in self.game.events() {
             self.journal.event(event)?;
-            match event.kind {
-                EventKind::GameStarted { button } => self.started.push(button),
-                EventKind::GameOver { .. } => self.games_over += 1,
-                _ => {}
+            let reached = self
+                .course
+                .as_mut()
+                .and_then(|course| course.hear(&event.kind));
+            if let Some(place) = reached {
+                let at_s = now(self.clock, &self.game);
+                self.journal.study(&Note::Reached { place, at_s })?;
             }
         }
-        writeln!(self.motion, "{}", motion::row(&self.game, &input)).context(MOTION_FAILED)?;
-        self.camera.observe(&self.game);
+        if let Some(recording) = &mut self.recording {
+            recording.frame(&self.game, &input)?;
+        }
         Ok(())
+    }
+
+    /// The course of a study's session.
+    pub fn course(&self) -> Option<&Course> {
+        self.course.as_ref()
+    }
+
+    /// The form that is to be filled in now.
+    pub fn form(&self) -> Option<&Form> {
+        self.course()?.form()
+    }
+
+    /// True when a study's session is complete or was stopped.
+    pub fn is_over(&self) -> bool {
+        self.course
+            .as_ref()
+            .is_some_and(|course| course.protocol().is_over())
+    }
+
+    /// Takes an act at the form that is due.
+    ///
+    /// # Errors
+    /// When no form is due, the act does not fit, or the journal cannot be written.
+    pub fn answer(&mut self, act: Act) -> Result<()> {
+        let at_s = self.now();
+        let course = self.course.as_mut().context(NO_STUDY)?;
+        let (note, reached) = course.act(at_s, act)?;
+        self.journal.study(&note)?;
+        self.reached(reached)
+    }
+
+    /// The participant was told what the study is about.
+    ///
+    /// # Errors
+    /// When this is no study's session, or the journal cannot be written.
+    pub fn debriefed(&mut self) -> Result<()> {
+        let reached = self.course.as_mut().context(NO_STUDY)?.debriefed();
+        self.reached(reached)
+    }
+
+    /// Keeps a remark of the experimenter.
+    ///
+    /// # Errors
+    /// When the journal cannot be written.
+    pub fn remark(&mut self, text: String) -> Result<()> {
+        let at_s = self.now();
+        self.journal.study(&Note::Remark { text, at_s })
+    }
+
+    /// Ends a study's session at once.
+    ///
+    /// # Errors
+    /// When this is no study's session, or the journal cannot be written.
+    pub fn stop(&mut self, by: Who, reason: String) -> Result<()> {
+        let at_s = self.now();
+        let note = self
+            .course
+            .as_mut()
+            .context(NO_STUDY)?
+            .stop(by, reason, at_s);
+        self.journal.study(&note)
+    }
+
+    fn reached(&mut self, place: Option<Place>) -> Result<()> {
+        let at_s = self.now();
+        match place {
+            Some(place) => self.journal.study(&Note::Reached { place, at_s }),
+            None => Ok(()),
+        }
+    }
+
+    /// Time since the session began: simulated where a script plays, else measured [s].
+    fn now(&self) -> f64 {
+        now(self.clock, &self.game)
     }
 
     /// Records what the device said of itself; the game never sees it.
@@ -150,7 +310,7 @@ impl Session {
 
     /// True once a ball was thrown in a game: there is something to draw.
     pub fn has_throws(&self) -> bool {
-        self.camera.has_throws()
+        self.recording.as_ref().is_some_and(Recording::has_throws)
     }
 
     /// What the device boundary refused so far.
@@ -158,9 +318,9 @@ impl Session {
         self.boundary.refused()
     }
 
-    /// The folder that the recording is in.
+    /// The folder that the journal is in.
     pub fn folder(&self) -> &Path {
-        self.folder.path()
+        &self.path
     }
 
     /// Ends the session: closes journal and motion table, writes the score sheets, and draws the
@@ -185,51 +345,48 @@ impl Session {
             refused: self.boundary.refused(),
             simulated_s: self.game.time(),
         };
+        let is_complete = match &self.course {
+            Some(course) => course.protocol().place() == Place::Complete,
+            None => self.games_over >= 2,
+        };
         self.journal.end(End {
             hash: summary.hash.clone(),
             inputs: 0,
-            complete: self.games_over >= 2,
+            complete: is_complete,
             red: total(&self.game, &started, Button::Red),
             blue: total(&self.game, &started, Button::Blue),
             refused: summary.refused,
         })?;
-        let mut files = vec![self.folder.path().join(JOURNAL), self.motion.finish()?];
-        for (button, text) in started.iter().zip(&summary.sheets) {
-            let stem = button.file_stem();
-            files.push(
-                self.folder
-                    .write(&format!("{stem}-score.txt"), text.as_bytes())?,
-            );
-            let table = sheet_table(&self.game, *button);
-            files.push(
-                self.folder
-                    .write(&format!("{stem}-score.tsv"), table.as_bytes())?,
-            );
-        }
+        let Some(recording) = self.recording else {
+            return Ok(summary);
+        };
+        let (mut files, album): (_, Album) = recording.finish(&self.game, &started)?;
         if let Some(painter) = painter {
-            let (still, films) = self.camera.develop();
-            for film in latest_of_each(films) {
-                match painter.paint(&still, &film, &self.folder, wanted, progress) {
-                    Ok(pictures) => files.extend(pictures),
-                    // The recording is whole; only pictures are missing, as was asked for.
-                    Err(_) if painter.is_stopped() => break,
-                    Err(error) => return Err(error),
-                }
-            }
+            files.extend(album.paint(painter, wanted, progress)?);
         }
         Ok(Summary { files, ..summary })
     }
 }
 
-/// The two files that grow with the session, with their first lines; neither stays where one fails.
-fn begin(folder: &OutputFolder, header: Header) -> Result<(Journal, Draft)> {
-    let mut motion = folder.draft(MOTION)?;
-    writeln!(motion, "{}", motion::heading()).context(MOTION_FAILED)?;
-    let journal = Journal::create(&folder.path().join(JOURNAL), header)?;
-    Ok((journal, motion))
+const NO_STUDY: &str = "this session is no part of a study";
+
+fn now(clock: Option<(Instant, f64)>, game: &Game) -> f64 {
+    clock.map_or_else(
+        || game.time(),
+        |(began, before)| before + began.elapsed().as_secs_f64(),
+    )
 }
 
-const MOTION_FAILED: &str = "cannot write the motion table: is the disk full?";
+/// Counts games that began and ended.
+fn count(events: &[Event], started: &mut Vec<Button>, games_over: &mut u32) {
+    for event in events {
+        match event.kind {
+            EventKind::GameStarted { button } => started.push(button),
+            EventKind::GameOver { .. } => *games_over += 1,
+            _ => {}
+        }
+    }
+}
 
 /// The display profile in use, as its key in the configuration.
 fn display_name(conditions: &Conditions) -> &'static str {
@@ -249,34 +406,8 @@ fn played_once(started: &[Button]) -> Vec<Button> {
     once
 }
 
-/// A game that was started again replaces the one before it, as on its score sheet.
-fn latest_of_each(films: Vec<Film>) -> Vec<Film> {
-    let mut latest: Vec<Film> = Vec::new();
-    for film in films {
-        latest.retain(|earlier| earlier.button != film.button);
-        latest.push(film);
-    }
-    latest
-}
-
 fn total(game: &Game, started: &[Button], button: Button) -> Option<u32> {
     started
         .contains(&button)
         .then(|| game.score_sheet(button).total())
-}
-
-/// The score sheet of one game for people.
-pub fn sheet_text(game: &Game, button: Button) -> String {
-    format!("{button}\n{}\n", game.score_sheet(button))
-}
-
-/// The score sheet of one game as a table: a row per frame.
-fn sheet_table(game: &Game, button: Button) -> String {
-    let sheet = game.score_sheet(button);
-    let mut table = "frame\tmarks\tcumulative\n".to_owned();
-    for (index, (marks, score)) in sheet.marks().iter().zip(sheet.frame_scores()).enumerate() {
-        let score = score.map_or("n/a".to_owned(), |score| score.to_string());
-        table += &format!("{}\t{marks}\t{score}\n", index + 1);
-    }
-    table
 }

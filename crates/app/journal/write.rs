@@ -5,6 +5,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use experiment::journal::Appender;
+use experiment::protocol::Note;
 use game::{Event, Input};
 
 use super::{End, Entry, Header, InputLine};
@@ -35,6 +36,13 @@ impl Journal {
         Ok(Journal { lines, inputs: 0 })
     }
 
+    /// The same journal, whose session has consumed `inputs` inputs in earlier ones.
+    #[must_use]
+    pub fn behind(mut self, inputs: u64) -> Self {
+        self.inputs = inputs;
+        self
+    }
+
     /// Records what the game is about to consume.
     ///
     /// # Errors
@@ -61,13 +69,14 @@ impl Journal {
         self.append(Entry::Device(value))
     }
 
-    /// Records what the experiment noted, and waits until it outlasts a power cut.
+    /// Records what the experiment noted, and has it outlast a power cut as soon as the disk can.
     ///
     /// # Errors
     /// As [`Journal::input`].
-    pub fn study(&mut self, value: serde_json::Value) -> Result<()> {
+    pub fn study(&mut self, note: &Note) -> Result<()> {
+        let value = serde_json::to_value(note).context("a note cannot be written as JSON")?;
         self.append(Entry::Study(value))?;
-        Ok(self.lines.sync()?)
+        Ok(self.lines.persist()?)
     }
 
     /// Closes the journal; `end.inputs` is filled in here.

@@ -9,6 +9,7 @@ pub mod digest;
 pub mod files;
 pub mod journal;
 pub mod plan;
+pub mod protocol;
 pub mod questionnaire;
 pub mod random;
 pub mod study;

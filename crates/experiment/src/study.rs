@@ -245,35 +245,57 @@ impl Study {
         &self.rows
     }
 
-    /// What a session records of a resolved configuration: SHA-256 over the study's salt, the session, the button and the text.
+    /// What a session records of its resolved settings: SHA-256 over the study's salt, the session and the text.
     ///
-    /// The session is part of it, or equal digests would tell which participants met the same condition.
-    pub fn config_digest(
+    /// The session is part of it, or equal digests would tell which participants met the same conditions.
+    pub fn settings_digest(
         &self,
         participant: &ParticipantId,
         session: u32,
-        button: crate::plan::Button,
-        config: &str,
+        settings: &str,
     ) -> String {
         digest::salted(
             &self.salt,
-            &format!("\n{participant} {session} {button}\n{config}"),
+            &format!("\n{participant} {session}\n{settings}"),
         )
     }
 
-    /// Keeps a resolved configuration with the allocation, once however many sessions use it; returns its file.
+    /// Keeps resolved settings with the allocation, once however many sessions use them; returns their file.
     ///
     /// # Errors
     /// When it cannot be written.
-    pub fn keep_config(&self, lock: &Lock, config: &str) -> Result<PathBuf, StudyError> {
+    pub fn keep_settings(&self, lock: &Lock, settings: &str) -> Result<PathBuf, StudyError> {
         lock.belongs_to(self);
-        let folder = self.plan_folder().join("configs");
+        let folder = self.settings_folder();
         files::create_folder(&folder)?;
-        let path = folder.join(format!("{}.toml", digest::sha256(config.as_bytes())));
+        let path = folder.join(format!("{}.json", digest::sha256(settings.as_bytes())));
         if !path.exists() {
-            files::write(&path, config.as_bytes())?;
+            files::write(&path, settings.as_bytes())?;
         }
         Ok(path)
+    }
+
+    /// The settings that a session's digest belongs to; `None` when none of those that are kept fit.
+    ///
+    /// # Errors
+    /// When they cannot be read.
+    pub fn settings_of(
+        &self,
+        participant: &ParticipantId,
+        session: u32,
+        digest: &str,
+    ) -> Result<Option<String>, StudyError> {
+        for path in files::list(&self.settings_folder())? {
+            let settings = files::read(&path)?;
+            if self.settings_digest(participant, session, &settings) == digest {
+                return Ok(Some(settings));
+            }
+        }
+        Ok(None)
+    }
+
+    fn settings_folder(&self) -> PathBuf {
+        self.plan_folder().join("settings")
     }
 
     /// What a tombstone and nothing else says of a participant.
@@ -322,7 +344,7 @@ fn read_fixed(folder: &Path) -> Result<[String; 5], StudyError> {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::plan::{Button, Scheme, SessionRules};
+    use crate::plan::{Scheme, SessionRules};
     use std::os::unix::fs::PermissionsExt;
 
     pub(crate) const QUESTIONNAIRE: &str = include_str!("../../../config/questionnaire.toml");
@@ -433,17 +455,22 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn config_digest_does_not_tell_who_met_the_same() {
+    fn settings_are_found_by_a_digest_that_does_not_tell_who_met_the_same() {
         let folder = tempfile::tempdir().unwrap();
         let study = create(folder.path(), 18);
         let [a, b] = ["sub-p7k2", "sub-q4zx"].map(|id| ParticipantId::parse(id).unwrap());
-        let digest = |id, button| study.config_digest(id, 1, button, "elasticity = 0.7");
-        assert_eq!(digest(&a, Button::Red), digest(&a, Button::Red));
-        assert_ne!(digest(&a, Button::Red), digest(&b, Button::Red));
-        assert_ne!(digest(&a, Button::Red), digest(&a, Button::Blue));
+        let digest = |id| study.settings_digest(id, 1, "{}");
+        assert_eq!(digest(&a), digest(&a));
+        assert_ne!(digest(&a), digest(&b));
+        assert_ne!(digest(&a), study.settings_digest(&a, 2, "{}"));
         let lock = study.lock().unwrap();
-        let first = study.keep_config(&lock, "x = 1").unwrap();
-        assert_eq!(study.keep_config(&lock, "x = 1").unwrap(), first);
-        assert_eq!(fs::read_to_string(first).unwrap(), "x = 1");
+        let first = study.keep_settings(&lock, "{}").unwrap();
+        assert_eq!(study.keep_settings(&lock, "{}").unwrap(), first);
+        study.keep_settings(&lock, "[]").unwrap();
+        let found = |id| study.settings_of(id, 1, &digest(&b)).unwrap();
+        assert_eq!(
+            (found(&b).as_deref(), found(&a).as_deref()),
+            (Some("{}"), None)
+        );
     }
 }

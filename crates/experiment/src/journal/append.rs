@@ -30,8 +30,8 @@ pub struct Appender<T> {
 #[derive(Debug)]
 enum Order<T> {
     Append(T),
-    /// Make everything so far outlast a power cut, then answer.
-    Sync(Sender<()>),
+    /// Make everything so far outlast a power cut, then answer who waits.
+    Sync(Option<Sender<()>>),
 }
 
 impl<T: Serialize + Send + 'static> Appender<T> {
@@ -84,10 +84,18 @@ impl<T: Serialize + Send + 'static> Appender<T> {
     /// As [`Appender::append`].
     pub fn sync(&mut self) -> Result<(), JournalError> {
         let (done, wait) = channel();
-        self.order(Order::Sync(done))?;
+        self.order(Order::Sync(Some(done)))?;
         // The thread gives up without an answer after a failure, which is told next.
         let _ = wait.recv();
         self.failure()
+    }
+
+    /// Asks for the same without waiting for it.
+    ///
+    /// # Errors
+    /// As [`Appender::append`].
+    pub fn persist(&mut self) -> Result<(), JournalError> {
+        self.order(Order::Sync(None))
     }
 
     fn order(&mut self, order: Order<T>) -> Result<(), JournalError> {
@@ -163,7 +171,7 @@ impl Writer {
                 Order::Sync(done) => {
                     self.sync()?;
                     // Who asked may have gone.
-                    let _ = done.send(());
+                    let _ = done.map(|done| done.send(()));
                 }
             }
             if self.time_to_sync().is_zero() {

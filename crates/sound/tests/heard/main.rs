@@ -1,0 +1,13 @@
+//! What is heard, held against formulas and figures from outside the crate.
+
+#[cfg(target_os = "linux")]
+mod card;
+mod level;
+mod pitch;
+mod place;
+mod repeat;
+mod rolling;
+#[path = "../../examples/throw/strike.rs"]
+mod strike;
+mod support;
+mod time;
