@@ -12,4 +12,6 @@ pub mod plan;
 pub mod protocol;
 pub mod questionnaire;
 pub mod random;
+pub mod record;
 pub mod study;
+pub mod tables;

@@ -61,7 +61,7 @@ impl Study {
 impl Lock {
     /// # Panics
     /// When it was taken for another study, which is a mistake in the program.
-    pub(super) fn belongs_to(&self, study: &Study) {
+    pub(crate) fn belongs_to(&self, study: &Study) {
         assert_eq!(self.root, study.root, "a lock opens one study");
     }
 }
