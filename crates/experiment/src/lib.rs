@@ -8,6 +8,7 @@ pub mod consent;
 pub mod digest;
 pub mod files;
 pub mod journal;
+pub mod participant;
 pub mod plan;
 pub mod protocol;
 pub mod questionnaire;

@@ -2,6 +2,7 @@
 
 use crate::consent::Consent;
 use crate::plan::Button;
+use crate::protocol::AnsweredIn;
 use crate::questionnaire::{Answer, Answers, Stage};
 use crate::study::ParticipantId;
 
@@ -43,22 +44,9 @@ pub enum Status {
 #[derive(Debug, Clone, PartialEq)]
 pub struct FilledForm {
     /// Where.
-    pub place: Place,
+    pub answered_in: AnsweredIn,
     /// What.
     pub answers: Answers,
-}
-
-/// Where a form was filled in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
-    /// On a panel in the virtual room.
-    Headset,
-    /// At the desk.
-    Desktop,
-    /// On paper, typed in by the experimenter.
-    Paper,
-    /// By a simulated participant.
-    Script,
 }
 
 /// What a session was recorded with.
@@ -245,18 +233,6 @@ impl Status {
         match self {
             Status::Complete => "complete",
             Status::Partial => "partial",
-        }
-    }
-}
-
-impl Place {
-    /// As tables name it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Place::Headset => "headset",
-            Place::Desktop => "desktop",
-            Place::Paper => "paper",
-            Place::Script => "script",
         }
     }
 }

@@ -3,8 +3,9 @@
 use serde_json::{Value, json};
 
 use super::{Column, Table};
+use crate::protocol::AnsweredIn;
 use crate::questionnaire::{Answer, Item, Kind, Presence, Questionnaire, Stage};
-use crate::record::{Place, SessionRecord, Status};
+use crate::record::{SessionRecord, Status};
 
 /// A row for each participant; the answers of the first session.
 pub(super) fn participants(questionnaire: &Questionnaire, records: &[SessionRecord]) -> Table {
@@ -95,10 +96,9 @@ pub(super) fn presence(
     }
     columns.push(
         Column::new("answered_in", "where the last form was filled in").with_levels([
-            (Place::Headset.name(), "on a panel in the virtual room"),
-            (Place::Desktop.name(), "at the desk"),
-            (Place::Paper.name(), "on paper, typed in afterwards"),
-            (Place::Script.name(), "by a simulated participant"),
+            ("headset", "on a panel in the virtual room"),
+            ("desktop", "at the desk"),
+            ("script", "by a simulated participant"),
         ]),
     );
     let mut table = Table::new(columns);
@@ -128,7 +128,7 @@ pub(super) fn presence(
             row.push(answered.to_string());
         }
         let last = record.form(Stage::After).or(record.forms.last());
-        row.push(last.map_or(String::new(), |form| form.place.name().to_owned()));
+        row.push(last.map_or(String::new(), |form| place(form.answered_in).to_owned()));
         table.push(row);
     }
     table
@@ -187,4 +187,12 @@ fn column(name: &str, item: &Item) -> Column {
 
 fn cell(answer: Option<&Answer>) -> String {
     answer.map_or_else(String::new, Answer::cell)
+}
+
+fn place(answered_in: AnsweredIn) -> &'static str {
+    match answered_in {
+        AnsweredIn::Headset => "headset",
+        AnsweredIn::Desk => "desktop",
+        AnsweredIn::Script => "script",
+    }
 }

@@ -7,6 +7,7 @@ use super::*;
 use crate::consent::Ticks;
 use crate::files;
 use crate::plan::{Button, SessionRules};
+use crate::protocol::AnsweredIn;
 use crate::questionnaire::{Act, Answer, Form, Stage};
 use crate::record::*;
 use crate::study::tests::{create, create_with};
@@ -48,7 +49,7 @@ pub(crate) fn filled(study: &Study, stage: Stage, step: u8, skipped: &str) -> Fi
         form.act(at_s, act).unwrap();
     }
     FilledForm {
-        place: Place::Script,
+        answered_in: AnsweredIn::Script,
         answers: form.answers(),
     }
 }
