@@ -14,5 +14,6 @@ pub mod protocol;
 pub mod questionnaire;
 pub mod random;
 pub mod record;
+pub mod staircase;
 pub mod study;
 pub mod tables;

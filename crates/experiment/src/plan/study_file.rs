@@ -11,6 +11,7 @@ use super::{
 use crate::consent::is_date;
 use crate::digest;
 use crate::questionnaire::line_of;
+use crate::staircase::{StaircaseError, StaircasePlan};
 
 /// Version of the file's meaning.
 pub const SCHEMA: u32 = 1;
@@ -35,6 +36,9 @@ pub struct Plan {
     pub about: About,
     /// What happens in a session.
     pub session: SessionRules,
+    /// Trials of a just-noticeable difference, in a study that has them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub staircase: Option<StaircasePlan>,
     factor: Vec<FactorEntry>,
     cell: Vec<CellEntry>,
 }
@@ -96,6 +100,9 @@ pub enum PlanError {
     /// The allocation is not as it was written.
     #[error(transparent)]
     Allocation(#[from] TableError),
+    /// The staircase cannot be run.
+    #[error("the plan cannot be used: {0}")]
+    Staircase(#[from] StaircaseError),
     /// A value is out of range.
     #[error("the plan cannot be used: {0}")]
     Content(String),
@@ -155,11 +162,24 @@ impl Plan {
             design_sha256: digest::sha256(allocation_csv(&design, &rows).as_bytes()),
             about,
             session,
+            staircase: None,
             factor,
             cell,
         };
         plan.check()?;
         Ok((plan, rows))
+    }
+
+    /// The plan with trials of a just-noticeable difference.
+    ///
+    /// # Errors
+    /// When they cannot be run.
+    pub fn with_staircase(self, staircase: StaircasePlan) -> Result<Plan, PlanError> {
+        staircase.check()?;
+        Ok(Plan {
+            staircase: Some(staircase),
+            ..self
+        })
     }
 
     /// The factors and cells.
@@ -259,6 +279,9 @@ impl Plan {
         if about.title.trim().is_empty() || about.title.chars().any(char::is_control) {
             return wrong("the title is empty or has a line break".to_owned());
         }
+        if let Some(staircase) = &self.staircase {
+            staircase.check()?;
+        }
         Ok(())
     }
 }
@@ -299,6 +322,38 @@ pub(crate) mod tests {
         assert!(
             error.contains("not the one that the plan was made with"),
             "{error}"
+        );
+    }
+
+    #[test]
+    fn plan_keeps_its_staircase() {
+        let staircase = StaircasePlan {
+            key: "objects.friction_rate".to_owned(),
+            standard: 0.0,
+            furthest: 1.0,
+            rule: crate::staircase::Rule::Bayesian,
+            trials: 60,
+            catch_share: 0.2,
+        };
+        let (made, _) = plan(18, 1997, about(), SessionRules::default()).unwrap();
+        let broken = StaircasePlan {
+            trials: 0,
+            ..staircase.clone()
+        };
+        assert!(made.clone().with_staircase(broken).is_err());
+        let made = made.with_staircase(staircase).unwrap();
+        let text = made.to_toml();
+        assert!(text.contains("rule = \"bayesian\""), "{text}");
+        assert_eq!(Plan::parse(&text, Path::new("study.toml")).unwrap(), made);
+        let error = Plan::parse(
+            &text.replace("catch_share = 0.2", "catch_share = 2.0"),
+            Path::new("study.toml"),
+        );
+        assert!(
+            error
+                .unwrap_err()
+                .to_string()
+                .contains("staircase.catch_share is 2")
         );
     }
 
