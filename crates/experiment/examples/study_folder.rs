@@ -172,6 +172,7 @@ fn run(game: u8, button: Button) -> Run {
         onset_s: Some(0.25),
         displacement_m: 0.2,
         speed_mps: 0.8,
+        gain_m: 0.01,
         score: 9.0,
     });
     Run {

@@ -153,8 +153,10 @@ pub struct HeadResponse {
     pub onset_s: Option<f64>,
     /// Largest way of the head off its place [m].
     pub displacement_m: f64,
-    /// Largest speed of the head [m/s].
+    /// Largest speed of the head off its place [m/s].
     pub speed_mps: f64,
+    /// How much farther it passed than it would have passed a head that went on as before [m].
+    pub gain_m: f64,
     /// The largest way in standard deviations of the head's own sway.
     pub score: f64,
 }

@@ -166,6 +166,11 @@ fn event_columns() -> Vec<Column> {
         Column::new("head_displacement", "largest way of the head off its place").with_units("m"),
         Column::new("head_speed", "largest speed of the head").with_units("m/s"),
         Column::new(
+            "head_gain",
+            "how much farther it passed than it would have passed a head that went on as before",
+        )
+        .with_units("m"),
+        Column::new(
             "head_score",
             "largest way in standard deviations of the head's own sway",
         ),
@@ -191,6 +196,7 @@ pub(super) fn events(run: &Run) -> Table {
             optional(answer.and_then(|answer| answer.onset_s), number),
             optional(answer, |answer| number(answer.displacement_m)),
             optional(answer, |answer| number(answer.speed_mps)),
+            optional(answer, |answer| number(answer.gain_m)),
             optional(answer, |answer| number(answer.score)),
         ]);
     }

@@ -76,6 +76,7 @@ fn run(number: u32, button: Button) -> Run {
         onset_s: None,
         displacement_m: 0.01,
         speed_mps: 0.02,
+        gain_m: 0.01,
         score: 0.7,
     });
     Run {
