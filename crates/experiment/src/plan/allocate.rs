@@ -361,6 +361,23 @@ mod tests {
         }
     }
 
+    /// Groups of 12, 1, 1 and 1 participants a block: each has its share in a partial block too.
+    #[test]
+    fn prop_unequal_groups_have_their_shares() {
+        let mut design = Scheme::Full.design().unwrap();
+        design
+            .cells
+            .retain(|cell| cell.low.to_string() == "000" && cell.high.to_string() != "111");
+        design.cells.truncate(4);
+        design.cells[0].weight = 12;
+        for subjects in 1..=60 {
+            for seed in 0..20 {
+                let b = balance(&design, &allocate(&design, subjects, seed));
+                assert_eq!(b.problems, Vec::<String>::new(), "{subjects} seed {seed}");
+            }
+        }
+    }
+
     #[test]
     fn allocate_spreads_drawn_values_over_their_range() {
         let design = Scheme::Continuous.design().unwrap();

@@ -257,3 +257,103 @@ impl fmt::Display for Balance {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Condition, Scheme, allocate};
+    use super::*;
+
+    #[test]
+    fn balance_reports_what_is_there() {
+        let design = Scheme::Table2.design().unwrap();
+        let text = balance(&design, &allocate(&design, 18, 1997)).to_string();
+        for line in [
+            "18 participants",
+            "elasticity                     6",
+            "000              shape                               2",
+            "lower levels first 9, second 9",
+            "Red has the higher levels 9 times, Blue 9 times",
+            "spread of the arrangements: 1 over all, at most 1 among those with the same change",
+            "Table 2 of the paper: all 12 rows agree (1 times its 18 participants)",
+        ] {
+            assert!(text.contains(line), "{line} in\n{text}");
+        }
+        assert!(!text.contains("problem"), "{text}");
+        let other = balance(&design, &allocate(&design, 19, 1997)).to_string();
+        assert!(
+            other.contains("Table 2 of the paper: does not apply"),
+            "{other}"
+        );
+    }
+
+    #[test]
+    fn balance_names_what_is_wrong() {
+        let design = Scheme::Table2.design().unwrap();
+        let good = allocate(&design, 18, 1997);
+        let with = |change: &dyn Fn(&mut Vec<Row>)| {
+            let mut rows = good.clone();
+            change(&mut rows);
+            balance(&design, &rows)
+        };
+        let cell = with(&|rows| {
+            let other = rows
+                .iter()
+                .find(|row| row.low != rows[0].low && row.changed == rows[0].changed)
+                .unwrap()
+                .clone();
+            (rows[0].low, rows[0].high) = (other.low, other.high);
+        });
+        assert_eq!(cell.table_2, Some(false));
+        assert!(
+            cell.problems[0].contains("participants instead of"),
+            "{:?}",
+            cell.problems
+        );
+        assert!(cell.to_string().contains("Table 2 of the paper: NOT met"));
+        let one_way = with(&|rows| {
+            rows.iter_mut()
+                .for_each(|row| row.arrangement = Arrangement::ALL[0])
+        });
+        assert_eq!((one_way.order, one_way.spread()), ([18, 0], 18));
+        assert!(
+            one_way
+                .problems
+                .iter()
+                .any(|problem| problem.contains("differ by 18 over all")),
+            "{:?}",
+            one_way.problems
+        );
+        let stranger = with(&|rows| {
+            let row = rows
+                .iter_mut()
+                .find(|row| row.low.to_string() == "000")
+                .unwrap();
+            row.high = Condition(vec![1, 1, 1]);
+        });
+        let named = stranger
+            .problems
+            .iter()
+            .any(|problem| problem.contains("has a pair of conditions that is no cell"));
+        assert!(named, "{:?}", stranger.problems);
+        let group = with(&|rows| {
+            let shape = rows
+                .iter()
+                .find(|row| row.changed == "shape")
+                .unwrap()
+                .clone();
+            let index = rows
+                .iter()
+                .position(|row| row.changed == "friction")
+                .unwrap();
+            rows[index] = shape;
+        });
+        assert!(
+            group
+                .problems
+                .iter()
+                .any(|problem| problem.contains("a whole one off its share")),
+            "{:?}",
+            group.problems
+        );
+    }
+}
