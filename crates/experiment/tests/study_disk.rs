@@ -1,6 +1,6 @@
-//! A study on a disk that is full, read-only or gone: each a sentence, and nothing that was there is lost.
+//! A study on a disk that is full, read-only or gone, or in the hands of another program: each a sentence, and nothing is lost.
 //!
-//! Needs a file system of its own, which only an administrator may mount; without, the tests name themselves as skipped.
+//! The disk is a file system of its own, which only an administrator may mount; without, these tests name themselves as skipped.
 #![cfg(target_os = "linux")]
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -10,7 +10,7 @@ use std::process::Command;
 
 use experiment::consent::ConsentForm;
 use experiment::plan::{About, Plan, Scheme, SessionRules};
-use experiment::study::Study;
+use experiment::study::{Study, StudyError};
 use experiment::tables::Tables;
 
 /// A small disk, gone when dropped.
@@ -155,4 +155,27 @@ fn read_only_or_removed_folder_is_named() {
         !root.exists(),
         "a folder that was removed is not made again"
     );
+}
+
+#[test]
+fn another_program_keeps_the_study_until_it_is_killed() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = create(&folder.path().join("study")).unwrap();
+    let file = study.root().join("study.lock");
+    // util-linux' flock takes the same lock; -o keeps it from the program that it starts.
+    let mut other = Command::new("flock")
+        .args(["-x", "-o"])
+        .arg(&file)
+        .args(["sleep", "10"])
+        .spawn()
+        .unwrap();
+    // The other program waits for this one's turns to end, so that it gets the lock in the end.
+    let refused = (0..10_000_000).find_map(|_| study.lock().err());
+    assert!(
+        matches!(refused, Some(StudyError::InUse { .. })),
+        "{refused:?}"
+    );
+    other.kill().unwrap();
+    other.wait().unwrap();
+    study.lock().unwrap();
 }

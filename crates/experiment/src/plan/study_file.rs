@@ -59,6 +59,19 @@ pub struct About {
     pub retention_until: String,
 }
 
+impl About {
+    /// What is due on `today`, `YYYY-MM-DD`, as a sentence: the day until which data are kept has passed.
+    pub fn reminder(&self, today: &str) -> Option<String> {
+        // Days in this form are in order as texts are.
+        (today > self.retention_until.as_str()).then(|| {
+            format!(
+                "data that can be tied to a person were to be kept until {}: erase the participants, or make the data anonymous",
+                self.retention_until
+            )
+        })
+    }
+}
+
 /// What happens in a session.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -323,6 +336,13 @@ pub(crate) mod tests {
             error.contains("not the one that the plan was made with"),
             "{error}"
         );
+    }
+
+    #[test]
+    fn reminder_comes_the_day_after() {
+        assert_eq!(about().reminder("2036-12-31"), None);
+        let reminder = about().reminder("2037-01-01").unwrap();
+        assert!(reminder.contains("until 2036-12-31"), "{reminder}");
     }
 
     #[test]

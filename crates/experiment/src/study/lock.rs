@@ -35,6 +35,9 @@ impl Study {
                 let mut holder = String::new();
                 // The number is a help; that there is a holder is certain without it.
                 file.read_to_string(&mut holder).ok();
+                if holder.trim().is_empty() {
+                    holder.push_str("unknown");
+                }
                 return Err(StudyError::InUse {
                     root: self.root.clone(),
                     holder: holder.trim().to_owned(),
