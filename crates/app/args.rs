@@ -1,6 +1,7 @@
 //! The command line: what a person may ask for, and what is refused before anything starts.
 
 mod accuracy;
+mod analyse;
 mod compare;
 mod throw;
 
@@ -10,6 +11,7 @@ use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 
 pub use accuracy::AccuracyArguments;
+pub use analyse::{AnalyseArguments, PowerArguments};
 pub use compare::{CompareArguments, Sweep};
 pub use throw::{
     ModelChoice, PinNumbers, ShapeChoice, ShotArguments, Span, StrikeMapArguments, ThrowArguments,
@@ -140,6 +142,16 @@ pub enum Command {
     /// writes tables, a contact sheet of the same instants and a video; with --sweep, figures along a parameter
     /// instead. docs/compare.md explains the numbers.
     Compare(CompareArguments),
+    /// Analyse a study or a table: the paper's tables, and what an honest reader needs beside them.
+    ///
+    /// Prints the report and writes report.html, which stands alone, report.json with every number, and the figures.
+    /// docs/analysis.md names the columns of a table and explains the numbers.
+    Analyse(AnalyseArguments),
+    /// Say how many subjects a study needs: simulates studies and analyses them.
+    ///
+    /// Prints how often the paper's chi-squared test and the quasi-binomial F test reject, by number of subjects, with
+    /// intervals, how often they reject where there is no effect, and what follows. docs/analysis.md says from what.
+    Power(PowerArguments),
 }
 
 /// Who or what bowls.

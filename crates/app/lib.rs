@@ -4,6 +4,7 @@
 //! [`shot`], [`strike_map`], [`effects`](mod@effects), [`accuracy`](mod@accuracy) and [`compare`] are the commands; a [`session::Session`] takes one input per displayed frame from any device.
 
 pub mod accuracy;
+pub mod analyse;
 pub mod args;
 pub mod boundary;
 pub mod choose;
@@ -18,6 +19,7 @@ pub mod motion;
 pub mod output;
 pub mod pictures;
 pub mod play;
+pub mod power;
 pub mod query;
 pub mod rehearsal;
 pub mod replay;
@@ -84,6 +86,8 @@ fn obey(arguments: &Arguments) -> Result<()> {
         Some(Command::Accuracy(accuracy)) => {
             accuracy::accuracy(accuracy, &root::find(arguments.root.as_deref())?)
         }
+        Some(Command::Analyse(arguments)) => analyse::analyse(arguments),
+        Some(Command::Power(arguments)) => power::power(arguments),
         Some(Command::Compare(compare)) => {
             compare::compare(compare, &root::find(arguments.root.as_deref())?)
         }
