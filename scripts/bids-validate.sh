@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Passes a folder through the BIDS validator: scripts/bids-validate.sh STUDY/data
+# Passes a folder through the BIDS validator: scripts/bids-validate.sh STUDY/data; with --install only makes it ready.
 # The validator is the npm package bids-validator, installed once into a cache folder. Exit 3 where there is no npm.
 set -euo pipefail
 
 version=1.15.0
 
-if [ $# -ne 1 ] || [ ! -f "$1/dataset_description.json" ]; then
+if [ $# -ne 1 ] || { [ "$1" != --install ] && [ ! -f "$1/dataset_description.json" ]; }; then
   echo "say which dataset: scripts/bids-validate.sh FOLDER, with a dataset_description.json in it" >&2
   exit 2
 fi
@@ -23,4 +23,4 @@ if [ ! -e "$cache/complete" ]; then
   touch "$cache/complete"
 fi
 # Of its warnings the loudest says that a motion table has no heading, which is how BIDS wants it.
-exec node "$program" "$1" --ignoreWarnings --no-color
+[ "$1" = --install ] || exec node "$program" "$1" --ignoreWarnings --no-color

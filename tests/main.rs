@@ -2,8 +2,6 @@
 
 /// What accuracy costs: dials, references, files.
 mod accuracy;
-/// Tables in, reports out; power.
-mod analyse;
 /// Meshes and textures against their generator.
 mod assets;
 /// What is refused, and with which sentence.
@@ -26,6 +24,9 @@ mod release;
 mod shot;
 /// Maps of strikes, and what cannot be mapped.
 mod strike_map;
+/// Studies from plan to tables, killed, damaged, erased.
+#[cfg(unix)]
+mod study;
 /// Folders, and the real program.
 mod support;
 /// A person bowls in a real window.

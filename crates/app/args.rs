@@ -1,8 +1,9 @@
 //! The command line: what a person may ask for, and what is refused before anything starts.
 
 mod accuracy;
-mod analyse;
+mod capture;
 mod compare;
+mod study;
 mod throw;
 
 use std::path::PathBuf;
@@ -11,8 +12,12 @@ use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 
 pub use accuracy::AccuracyArguments;
-pub use analyse::{AnalyseArguments, PowerArguments};
+pub use capture::{CaptureArguments, ViewChoice};
 pub use compare::{CompareArguments, Sweep};
+pub use study::{
+    EraseArguments, ExportArguments, NewStudyArguments, PlanArguments, ResumeArguments,
+    RunArguments, SimulateArguments, StudyArguments, StudyCommand, StudyFolder, UnblindArguments,
+};
 pub use throw::{
     ModelChoice, PinNumbers, ShapeChoice, ShotArguments, Span, StrikeMapArguments, ThrowArguments,
 };
@@ -142,16 +147,13 @@ pub enum Command {
     /// writes tables, a contact sheet of the same instants and a video; with --sweep, figures along a parameter
     /// instead. docs/compare.md explains the numbers.
     Compare(CompareArguments),
-    /// Analyse a study or a table: the paper's tables, and what an honest reader needs beside them.
+    /// Draw any moment of a session, or film a span of it, again from its journal.
+    Capture(CaptureArguments),
+    /// Plan and run an experiment, and keep its data.
     ///
-    /// Prints the report and writes report.html, which stands alone, report.json with every number, and the figures.
-    /// docs/analysis.md names the columns of a table and explains the numbers.
-    Analyse(AnalyseArguments),
-    /// Say how many subjects a study needs: simulates studies and analyses them.
-    ///
-    /// Prints how often the paper's chi-squared test and the quasi-binomial F test reject, by number of subjects, with
-    /// intervals, how often they reject where there is no effect, and what follows. docs/analysis.md says from what.
-    Power(PowerArguments),
+    /// A study is a folder: `plan/` with what was decided and who plays what, for the experimenter's eyes, and `data/`, a BIDS
+    /// dataset that can be shared and never says what a button meant. docs/study.md explains every file.
+    Study(StudyArguments),
 }
 
 /// Who or what bowls.
@@ -173,6 +175,15 @@ pub enum DisplayChoice {
     /// The head-mounted display of the 1997 paper: 75 by 40 degrees, 704x480 relayed to 360x240.
     #[value(name = "1996")]
     Nineties,
+}
+
+impl From<DisplayChoice> for game::DisplayProfileName {
+    fn from(choice: DisplayChoice) -> Self {
+        match choice {
+            DisplayChoice::Modern => Self::Modern,
+            DisplayChoice::Nineties => Self::Of1996,
+        }
+    }
 }
 
 impl DisplayChoice {

@@ -9,7 +9,7 @@ use glam::{DQuat, Mat4, Quat, Vec3};
 use physics::Pose;
 use renderer::{Instance, Material, Scene};
 
-pub use eyes::{eyes, spectator, spectator_eyes};
+pub use eyes::{bird, eyes, spectator, spectator_eyes};
 pub use stock::Stock;
 
 use stock::{Piece, box_material};

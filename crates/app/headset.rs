@@ -16,6 +16,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
+use experiment::protocol::AnsweredIn;
 use game::{Button, Config};
 use renderer::headset::{Focus, HeadsetError, HeadsetSession, HeadsetSettings, Note, Readings};
 use renderer::{Renderer, RendererSettings, View};
@@ -23,9 +24,11 @@ use serde_json::json;
 
 use crate::convert::{self, Stock};
 use crate::devices::headset::Participant;
+use crate::panel::{Panel, PanelStock};
 use crate::pictures::{Painter, Wanted};
 use crate::play::{self, Progress};
 use crate::session::{Session, Setup};
+use crate::study::attendant::Attendant;
 use frames::FrameTimes;
 use watch::Watch;
 
@@ -97,7 +100,13 @@ impl Shared {
 ///
 /// # Errors
 /// One sentence when no headset can be used, an asset is missing, or the recording cannot be written.
-pub fn run(setup: Setup, root: &Path, wanted: Wanted, refresh_rate_hz: Option<f32>) -> Result<()> {
+pub fn run(
+    setup: Setup,
+    root: &Path,
+    wanted: Wanted,
+    refresh_rate_hz: Option<f32>,
+    attendant: Option<Attendant>,
+) -> Result<()> {
     let config = setup.conditions.lobby.clone();
     let settings = HeadsetSettings { refresh_rate_hz };
     let stop = play::interruption()?;
@@ -125,6 +134,7 @@ pub fn run(setup: Setup, root: &Path, wanted: Wanted, refresh_rate_hz: Option<f3
         shared: Arc::clone(&shared),
         root: root.to_owned(),
         participant: Participant::new(config.physics.step_hz),
+        panel: Panel::new(AnsweredIn::Headset),
         times: FrameTimes::default(),
         is_paused: false,
         menu_was_down: false,
@@ -140,7 +150,7 @@ pub fn run(setup: Setup, root: &Path, wanted: Wanted, refresh_rate_hz: Option<f3
             let _ = sender.send(player.play(stage));
         })
         .context("cannot start the headset's thread")?;
-    let watch = Watch::new(Arc::clone(&shared), ended);
+    let watch = Watch::new(Arc::clone(&shared), ended, attendant);
     let outcome = mirror::stay(watch, Arc::clone(&shared), root, &config);
     let session = shared
         .session
@@ -168,6 +178,7 @@ pub fn run(setup: Setup, root: &Path, wanted: Wanted, refresh_rate_hz: Option<f3
 struct Stage {
     renderer: Renderer,
     stock: Stock,
+    panel: PanelStock,
     headset: HeadsetSession,
 }
 
@@ -177,9 +188,11 @@ impl Stage {
         let mut renderer = Renderer::new(headset.gpu(), RendererSettings::default())
             .context("cannot draw for the headset")?;
         let stock = Stock::load(&mut renderer, root, config)?;
+        let panel = PanelStock::new(headset.gpu(), &mut renderer)?;
         Ok(Self {
             renderer,
             stock,
+            panel,
             headset,
         })
     }
@@ -192,6 +205,8 @@ struct Player {
     config: Config,
     settings: HeadsetSettings,
     participant: Participant,
+    /// What a study asks in the room.
+    panel: Panel,
     times: FrameTimes,
     /// The participant paused by the menu button.
     is_paused: bool,
@@ -300,7 +315,7 @@ impl Player {
         let readings = headset.read(&frame)?;
         self.hear_menu(&readings)?;
         let is_here = headset.focus() == Focus::Focused && !self.is_paused;
-        let (participant, keys) = (&mut self.participant, &self.shared);
+        let (participant, panel, keys) = (&mut self.participant, &mut self.panel, &self.shared);
         let played = self.shared.with(|session| {
             let mut input = if is_here {
                 let is_holding = session.game().held().is_some();
@@ -313,6 +328,9 @@ impl Player {
             input.press_blue |= keys.take_press(Button::Blue);
             let held = session.game().held();
             session.frame(input)?;
+            if is_here {
+                panel.attend(session)?;
+            }
             let game = session.game();
             let visible = game.visible_at(participant.share());
             let scene = convert::scene(visible.iter(), &stage.stock, game.held().is_some());
@@ -322,11 +340,13 @@ impl Player {
                 pulses::of(game.events(), held),
             ))
         })?;
-        let Some((scene, rig, pulse)) = played else {
+        let Some((mut scene, rig, pulse)) = played else {
             // The main thread has finished the session without this one.
             headset.skip(frame)?;
             return Ok(());
         };
+        let panel = stage.panel.instances(&self.panel, &mut stage.renderer)?;
+        scene.instances.extend(panel);
         let simulated = frame.woken().elapsed();
         let timing = self.times.of(&frame, simulated);
         if frame.should_render() {

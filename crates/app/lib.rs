@@ -4,9 +4,9 @@
 //! [`shot`], [`strike_map`], [`effects`](mod@effects), [`accuracy`](mod@accuracy) and [`compare`] are the commands; a [`session::Session`] takes one input per displayed frame from any device.
 
 pub mod accuracy;
-pub mod analyse;
 pub mod args;
 pub mod boundary;
+pub mod capture;
 pub mod choose;
 pub mod compare;
 pub mod convert;
@@ -17,9 +17,9 @@ pub mod headset;
 pub mod journal;
 pub mod motion;
 pub mod output;
+pub mod panel;
 pub mod pictures;
 pub mod play;
-pub mod power;
 pub mod query;
 pub mod rehearsal;
 pub mod replay;
@@ -28,6 +28,7 @@ pub mod scenery;
 pub mod session;
 pub mod shot;
 pub mod strike_map;
+pub mod study;
 pub mod window;
 
 use std::ffi::OsString;
@@ -86,11 +87,13 @@ fn obey(arguments: &Arguments) -> Result<()> {
         Some(Command::Accuracy(accuracy)) => {
             accuracy::accuracy(accuracy, &root::find(arguments.root.as_deref())?)
         }
-        Some(Command::Analyse(arguments)) => analyse::analyse(arguments),
-        Some(Command::Power(arguments)) => power::power(arguments),
         Some(Command::Compare(compare)) => {
             compare::compare(compare, &root::find(arguments.root.as_deref())?)
         }
+        Some(Command::Capture(capture)) => {
+            capture::capture(capture, &root::find(arguments.root.as_deref())?)
+        }
+        Some(Command::Study(study)) => study::study(study, &root::find(arguments.root.as_deref())?),
         Some(Command::StrikeMap(map)) => {
             strike_map::strike_map(map, &root::find(arguments.root.as_deref())?)
         }

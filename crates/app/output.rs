@@ -200,6 +200,36 @@ pub fn timed_folder(name: &str, now: SystemTime) -> PathBuf {
     Path::new("out").join(format!("{}-{name}", utc_name(seconds)))
 }
 
+/// A time in UTC, `YYYY-MM-DDThh:mm:ssZ` (RFC 3339).
+pub fn utc_time(time: SystemTime) -> String {
+    let seconds = time
+        .duration_since(UNIX_EPOCH)
+        .map_or(0, |since| since.as_secs());
+    let name = utc_name(seconds);
+    let (date, time) = name.split_at(10);
+    date.to_owned() + &time.replace('-', ":")
+}
+
+/// The time that is `seconds` after `utc`, both as [`utc_time`] writes them; `None` where `utc` is none.
+pub fn utc_later(utc: &str, seconds: f64) -> Option<String> {
+    let number = |range: std::ops::Range<usize>| utc.get(range)?.parse::<i64>().ok();
+    let days = days_since_1970(number(0..4)?, number(5..7)?, number(8..10)?);
+    let within = number(11..13)? * 3600 + number(14..16)? * 60 + number(17..19)?;
+    let later = u64::try_from(days * 86_400 + within + seconds.floor() as i64).ok()?;
+    Some(utc_time(UNIX_EPOCH + std::time::Duration::from_secs(later)))
+}
+
+/// Days from 1970-01-01 to a date: the inverse of [`civil_date`], from the same source, `days_from_civil`.
+fn days_since_1970(year: i64, month: i64, day: i64) -> i64 {
+    let year = year - i64::from(month <= 2);
+    let era = year.div_euclid(400);
+    let year_of_era = year.rem_euclid(400);
+    let shifted_month = (month + 9) % 12;
+    let day_of_year = (153 * shifted_month + 2) / 5 + day - 1;
+    let day_of_era = year_of_era * 365 + year_of_era / 4 - year_of_era / 100 + day_of_year;
+    era * 146_097 + day_of_era - 719_468
+}
+
 /// `seconds` since 1970 as a UTC time that sorts and is a file name on every system.
 fn utc_name(seconds: u64) -> String {
     let (year, month, day) = civil_date((seconds / 86_400) as i64);
@@ -237,6 +267,27 @@ mod tests {
         assert_eq!(utc_name(0), "1970-01-01T00-00-00Z");
         assert_eq!(utc_name(951_827_696), "2000-02-29T12-34-56Z");
         assert_eq!(utc_name(1_767_225_599), "2025-12-31T23-59-59Z");
+    }
+
+    #[test]
+    fn utc_time_is_that_of_rfc_3339() {
+        let time = UNIX_EPOCH + std::time::Duration::from_secs(951_827_696);
+        assert_eq!(utc_time(time), "2000-02-29T12:34:56Z");
+    }
+
+    #[test]
+    fn utc_later_goes_over_midnights_and_leap_days() {
+        let later = |utc, seconds| utc_later(utc, seconds).expect("a time");
+        assert_eq!(later("2024-02-28T23:59:30Z", 30.9), "2024-02-29T00:00:00Z");
+        assert_eq!(
+            later("1999-12-31T23:00:00Z", 3600.0),
+            "2000-01-01T00:00:00Z"
+        );
+        for day in (0..40_000).step_by(13) {
+            let (year, month, date) = civil_date(day);
+            assert_eq!(days_since_1970(year, month, date), day);
+        }
+        assert_eq!(utc_later("yesterday", 1.0), None);
     }
 
     #[test]

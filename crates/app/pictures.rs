@@ -118,7 +118,10 @@ impl Painter {
     /// A display that relays its image to fewer pixels is imitated step by step: drawn whole, relayed, then brought to
     /// `size`. Else the picture is drawn at `size`, or at the display's own where that is smaller: more pixels than the
     /// picture has would be thrown away again.
-    fn draw(
+    ///
+    /// # Errors
+    /// When they cannot be drawn, or drawing was stopped.
+    pub fn draw(
         &mut self,
         still: &[Visible],
         shot: &Shot,

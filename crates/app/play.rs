@@ -60,8 +60,8 @@ pub fn play(arguments: &PlayArguments, root: &Path) -> Result<()> {
     };
     match choice {
         Choice::ScriptOffscreen => offscreen(setup, root, wanted),
-        Choice::Headset => headset::run(setup, root, wanted, arguments.refresh_rate),
-        Choice::DeskWindow | Choice::ScriptWindow => window::run(setup, root, wanted, choice),
+        Choice::Headset => headset::run(setup, root, wanted, arguments.refresh_rate, None),
+        Choice::DeskWindow | Choice::ScriptWindow => window::run(setup, root, wanted, choice, None),
     }
 }
 

@@ -1,35 +1,42 @@
 //! `bowling replay`: plays a recording again from its inputs and checks that the same came out.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail};
-use game::{Button, EventKind, Game};
+use game::{Button, Conditions, EventKind, Game, Input};
 use serde_json::Value;
 
 use crate::journal::{self, Recording};
 use crate::motion::{self, Comparison};
 use crate::output::{JOURNAL, MOTION};
 use crate::session::sheet_text;
+use crate::study;
 
-/// Replays the recording in `folder`, prints the score sheets and the hash.
+/// Replays the recording in `folder`, or the session of a study, and prints the score sheets and the hash.
 ///
 /// # Errors
 /// When the recording is damaged, or the hash, a score, an event or the motion table differs.
 pub fn replay(folder: &Path) -> Result<()> {
-    let recording = journal::read(&folder.join(JOURNAL))?;
+    let path = journal_in(folder);
+    let recording = journal::read(&path)?;
+    // A study's tables are made from its journals; only a recording has one of its own.
+    let has_table = recording.header.conditions.is_some();
     let motion_path = folder.join(MOTION);
-    let table = fs::read_to_string(&motion_path).with_context(|| {
-        format!(
-            "cannot read {}: it belongs to the recording",
-            motion_path.display()
-        )
-    })?;
+    let table = has_table
+        .then(|| fs::read_to_string(&motion_path))
+        .transpose()
+        .with_context(|| {
+            format!(
+                "cannot read {}: it belongs to the recording",
+                motion_path.display()
+            )
+        })?;
     let in_table = |problem: String| anyhow!("{} {problem}", motion_path.display());
-    let mut comparison = Comparison::new(&table).map_err(in_table)?;
-    check_inputs(&recording)?;
-    let conditions = recording.conditions.clone();
-    let mut game = Game::new(conditions, recording.header.frames)
+    let comparison = table.as_deref().map(Comparison::new).transpose();
+    let mut comparison = comparison.map_err(in_table)?;
+    check_inputs(&recording.conditions, &recording.inputs)?;
+    let mut game = Game::new(recording.conditions.clone(), recording.header.frames)
         .context("cannot set up the recorded alley")?;
     let mut started = Vec::new();
     let mut table_problem = None;
@@ -42,35 +49,43 @@ pub fn replay(folder: &Path) -> Result<()> {
             }
             events.push((index, serde_json::to_value(event)?));
         }
-        if table_problem.is_none() {
+        if let (Some(comparison), None) = (&mut comparison, &table_problem) {
             table_problem = comparison.expect_line(&motion::row(&game, input)).err();
         }
     }
-    check_result(&game, &started, &recording, folder)?;
+    check_result(&game, &started, &recording, &path)?;
     // Only now: when the simulation itself went another way, that is the finding, not what follows from it.
     if let Some(problem) = event_difference(&recording.events, &events) {
-        bail!("{}: {problem}", folder.join(JOURNAL).display());
+        bail!("{}: {problem}", path.display());
     }
     if let Some(problem) = table_problem {
         return Err(in_table(problem));
     }
-    comparison.expect_end().map_err(in_table)?;
+    if let Some(comparison) = comparison {
+        comparison.expect_end().map_err(in_table)?;
+    }
     print_result(&game, &started, &recording);
     Ok(())
+}
+
+/// The journal in a folder: a recording's, or the last of a study's session.
+pub fn journal_in(folder: &Path) -> PathBuf {
+    let parts = (1..).map(|part| folder.join(study::folder::name(part)));
+    let last = parts.take_while(|path| path.exists()).last();
+    last.unwrap_or_else(|| folder.join(JOURNAL))
 }
 
 /// Refuses what no session records, before it can stall or break the simulation.
 ///
 /// # Errors
 /// A sentence with what was changed.
-pub fn check_inputs(recording: &Recording) -> Result<()> {
-    let conditions = &recording.conditions;
+pub fn check_inputs(conditions: &Conditions, inputs: &[Input]) -> Result<()> {
     conditions.lobby.check()?;
     for button in Button::BOTH {
         conditions.of(button).check()?;
     }
     let longest = conditions.lobby.physics.step_hz;
-    for (index, input) in recording.inputs.iter().enumerate() {
+    for (index, input) in inputs.iter().enumerate() {
         let mut admitted = *input;
         if admitted.refuse_unusable() > 0 || f64::from(input.steps) > longest {
             bail!(
@@ -82,17 +97,12 @@ pub fn check_inputs(recording: &Recording) -> Result<()> {
     Ok(())
 }
 
-fn check_result(
-    game: &Game,
-    started: &[Button],
-    recording: &Recording,
-    folder: &Path,
-) -> Result<()> {
+fn check_result(game: &Game, started: &[Button], recording: &Recording, path: &Path) -> Result<()> {
     let (end, count) = (&recording.end, recording.inputs.len());
     if end.inputs != count as u64 {
         bail!(
             "{}: the end says {} inputs, but there are {count}",
-            folder.join(JOURNAL).display(),
+            path.display(),
             end.inputs
         );
     }
@@ -103,7 +113,7 @@ fn check_result(
         if replayed != recorded {
             bail!(
                 "{}: the replay gives {} under {button}, the recording says {}: {}",
-                folder.display(),
+                path.display(),
                 score_text(replayed),
                 score_text(recorded),
                 origin(recording)
@@ -114,7 +124,7 @@ fn check_result(
     if hash != end.hash {
         bail!(
             "{}: the replay ends with state hash {hash}, the recording with {}: {}",
-            folder.display(),
+            path.display(),
             end.hash,
             origin(recording)
         );
@@ -189,8 +199,13 @@ fn print_result(game: &Game, started: &[Button], recording: &Recording) {
         println!("The session was ended before both games were over.");
     }
     println!(
-        "{} frames replayed: scores, events, motion table and state agree.",
-        recording.inputs.len()
+        "{} frames replayed: scores, events{} and state agree.",
+        recording.inputs.len(),
+        if recording.header.conditions.is_some() {
+            ", motion table"
+        } else {
+            ""
+        }
     );
     println!("State hash {}", recording.end.hash);
 }

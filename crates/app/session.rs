@@ -10,13 +10,14 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
-use experiment::protocol::{Note, Place, Who};
+use experiment::protocol::{AnsweredIn, Note, Place, Who};
 use experiment::questionnaire::{Act, Form};
 use game::{Button, Conditions, DisplayProfileName, Event, EventKind, Game, Input};
 use physics::{Stopwatch, Unwatched};
 
 use crate::boundary::{Boundary, Refused};
 use crate::journal::{self, Continues, End, Header, Journal, Story};
+use crate::panel::Pointing;
 use crate::pictures::{Painter, Wanted};
 use course::Course;
 pub use recording::sheet_text;
@@ -50,6 +51,30 @@ pub enum Keep {
     Study(Box<Seat>),
 }
 
+impl Keep {
+    /// The games that a scripted participant has still to begin, in their order, and its throws before them.
+    pub fn script(&self) -> (Vec<Button>, u32) {
+        let Self::Study(seat) = self else {
+            return (Button::BOTH.to_vec(), 0);
+        };
+        let first = seat.plan.first;
+        let games = [first, first.other()].map(course::button);
+        let events = seat.before.iter().flat_map(|(_, story)| &story.events);
+        let (mut begun, mut training) = (0, seat.plan.rules.training_throws);
+        for (_, event) in events {
+            match event["event"].as_str() {
+                Some("game_started") => begun += 1,
+                Some("settled") if begun == 0 => training = training.saturating_sub(1),
+                _ => {}
+            }
+        }
+        match begun {
+            0 => (games.to_vec(), training),
+            _ => (games[games.len().min(begun)..].to_vec(), 0),
+        }
+    }
+}
+
 /// A session's place in a study.
 #[derive(Debug)]
 pub struct Seat {
@@ -77,6 +102,7 @@ pub struct Session {
     course: Option<Course>,
     started: Vec<Button>,
     games_over: u32,
+    trigger: f64,
 }
 
 /// What a session left.
@@ -144,6 +170,7 @@ impl Session {
             course: None,
             started: Vec::new(),
             games_over: 0,
+            trigger: 0.0,
         }
     }
 
@@ -201,6 +228,7 @@ impl Session {
         if let Some(course) = &self.course {
             input.locked = course.protocol().locked();
         }
+        self.trigger = input.trigger;
         self.journal.input(&input)?;
         self.game.step_watched(&input, watch);
         count(self.game.events(), &mut self.started, &mut self.games_over);
@@ -226,6 +254,15 @@ impl Session {
         self.course.as_ref()
     }
 
+    /// Where the participant points from, while the head is tracked.
+    pub fn pointing(&self) -> Option<Pointing> {
+        Some(Pointing {
+            head: self.game.head_pose_world()?,
+            hand: self.game.hand_pose_world(),
+            trigger: self.trigger,
+        })
+    }
+
     /// The form that is to be filled in now.
     pub fn form(&self) -> Option<&Form> {
         self.course()?.form()
@@ -242,10 +279,10 @@ impl Session {
     ///
     /// # Errors
     /// When no form is due, the act does not fit, or the journal cannot be written.
-    pub fn answer(&mut self, act: Act) -> Result<()> {
+    pub fn answer(&mut self, act: Act, answered_in: AnsweredIn) -> Result<()> {
         let at_s = self.now();
         let course = self.course.as_mut().context(NO_STUDY)?;
-        let (note, reached) = course.act(at_s, act)?;
+        let (note, reached) = course.act(at_s, act, answered_in)?;
         self.journal.study(&note)?;
         self.reached(reached)
     }

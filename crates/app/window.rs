@@ -12,6 +12,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, anyhow};
+use experiment::protocol::AnsweredIn;
 use glam::{DQuat, DVec3};
 use renderer::{BackendChoice, Fov, Renderer, RendererSettings, TextPainter, View, WindowTarget};
 use winit::application::ApplicationHandler;
@@ -26,9 +27,11 @@ use crate::devices::desk::Desk;
 use crate::devices::gamepad::Gamepads;
 use crate::devices::script::{Script, Velocities};
 use crate::devices::{Device, LONGEST_CATCH_UP_S};
+use crate::panel::{Panel, PanelStock};
 use crate::pictures::{Painter, Wanted};
 use crate::play::{self, Progress};
 use crate::session::{Session, Setup};
+use crate::study::attendant::Attendant;
 use cost::Meter;
 use keys::{Command, Keys};
 use overlay::Overlay;
@@ -44,7 +47,13 @@ const SPECTATOR: DVec3 = DVec3::new(0.0, 1.7, 5.0);
 ///
 /// # Errors
 /// One sentence when no window, driver or asset is there, or the recording cannot be written.
-pub fn run(setup: Setup, root: &Path, wanted: Wanted, choice: Choice) -> Result<()> {
+pub fn run(
+    setup: Setup,
+    root: &Path,
+    wanted: Wanted,
+    choice: Choice,
+    attendant: Option<Attendant>,
+) -> Result<()> {
     let events = EventLoop::new().map_err(|_| {
         anyhow!(
             "no window can be opened: the display server does not answer; start from a desktop, or use --offscreen"
@@ -54,6 +63,7 @@ pub fn run(setup: Setup, root: &Path, wanted: Wanted, choice: Choice) -> Result<
     let mut shell = Shell {
         root: root.to_owned(),
         player: Player::new(&setup, choice),
+        attendant,
         frame_s: 1.0 / setup.rate_hz,
         setup: Some(setup),
         stage: None,
@@ -96,13 +106,9 @@ impl Player {
     fn new(setup: &Setup, choice: Choice) -> Self {
         let config = &setup.conditions.lobby;
         if choice == Choice::ScriptWindow {
-            let script = Script::new(
-                config,
-                setup.seed,
-                Velocities::Measured,
-                &game::Button::BOTH,
-            );
-            return Self::Script(Box::new(script));
+            let (games, training) = setup.keep.script();
+            let script = Script::new(config, setup.seed, Velocities::Measured, &games);
+            return Self::Script(Box::new(script.practising(training)));
         }
         let steps = (config.physics.step_hz / setup.rate_hz).round() as u32;
         let desk = Desk::new(config.participant.eye_height_m, steps, 1.0 / setup.rate_hz);
@@ -130,6 +136,8 @@ struct Stage {
     renderer: Renderer,
     stock: Stock,
     overlay: Overlay,
+    panel: Panel,
+    panel_stock: PanelStock,
     meter: Meter,
     keys: Keys,
     session: Session,
@@ -141,6 +149,8 @@ struct Stage {
 struct Shell {
     root: PathBuf,
     player: Player,
+    /// Who attends to a study's session.
+    attendant: Option<Attendant>,
     frame_s: f64,
     setup: Option<Setup>,
     stage: Option<Stage>,
@@ -165,6 +175,7 @@ impl Shell {
             Renderer::new(&gpu, RendererSettings::default()).context("cannot draw")?;
         let stock = Stock::load(&mut renderer, &self.root, &setup.conditions.lobby)?;
         let overlay = Overlay::new(TextPainter::new(&gpu));
+        let panel_stock = PanelStock::new(&gpu, &mut renderer)?;
         // Last: nothing is written before everything else works.
         let session = Session::start(setup)?;
         println!(
@@ -177,6 +188,8 @@ impl Shell {
             renderer,
             stock,
             overlay,
+            panel: Panel::new(AnsweredIn::Desk),
+            panel_stock,
             meter: Meter::new(),
             keys: Keys::default(),
             session,
@@ -204,7 +217,15 @@ impl Shell {
             stage.overlay.notice(stage.session.game());
         }
         stage.simulated += Duration::from_secs_f64(f64::from(count) * self.frame_s);
-        if device.is_done() || self.stop.load(std::sync::atomic::Ordering::Relaxed) {
+        if let Some(attendant) = &mut self.attendant {
+            attendant.attend(&mut stage.session)?;
+            stage.panel.attend(&mut stage.session)?;
+        }
+        let is_over = match stage.session.course() {
+            Some(_) => stage.session.is_over(),
+            None => device.is_done(),
+        };
+        if is_over || self.stop.load(std::sync::atomic::Ordering::Relaxed) {
             events.exit();
         }
         let drawn = Instant::now();
@@ -226,7 +247,10 @@ impl Shell {
                 }
             }
             Command::Cost => {
-                if let Some(stage) = &mut self.stage {
+                // In a study nothing may tell the conditions apart, not even what they cost.
+                if let Some(stage) = &mut self.stage
+                    && stage.session.course().is_none()
+                {
                     stage.overlay.toggle_cost();
                 }
             }
@@ -263,7 +287,11 @@ impl Stage {
     fn draw(&mut self) -> Result<()> {
         let game = self.session.game();
         let visible = game.visible();
-        let scene = convert::scene(visible.iter(), &self.stock, game.held().is_some());
+        let mut scene = convert::scene(visible.iter(), &self.stock, game.held().is_some());
+        let panel = self
+            .panel_stock
+            .instances(&self.panel, &mut self.renderer)?;
+        scene.instances.extend(panel);
         let (position, rotation) = game
             .head_pose_world()
             .map_or((SPECTATOR, DQuat::IDENTITY), |head| {

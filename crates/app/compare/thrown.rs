@@ -87,7 +87,7 @@ fn of_session(arguments: &CompareArguments) -> Result<Thrown> {
         path.clone()
     };
     let recording = journal::read(&journal)?;
-    check_inputs(&recording)?;
+    check_inputs(&recording.conditions, &recording.inputs)?;
     let throws = recording
         .events
         .iter()

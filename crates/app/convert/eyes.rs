@@ -9,6 +9,8 @@ use super::rotation;
 
 /// Vertical field of view of the spectator's eyes [rad].
 const SPECTATOR_FOV: f32 = 0.85;
+/// Vertical field of view of the bird's eye [rad].
+const BIRD_FOV: f32 = 0.9;
 
 /// The two eyes of a head, left first, with the angles of the display profile in use.
 pub fn eyes(world_from_head: &Pose, display: &DisplayConfig) -> [View; 2] {
@@ -39,10 +41,24 @@ pub fn spectator_eyes(headpin_z: f64, display: &DisplayConfig) -> [View; 2] {
     [View { fov, ..left }, View { fov, ..right }]
 }
 
+/// One eye under the ceiling above the approach, which sees the approach and the lane down to the pins.
+pub fn bird(aspect: f32) -> View {
+    let pose = towards(DVec3::new(1.2, 2.7, 3.2), DVec3::new(-0.1, 0.0, -5.0));
+    View {
+        position: pose.position.as_vec3(),
+        rotation: rotation(pose.rotation),
+        fov: Fov::from_aspect(BIRD_FOV, aspect),
+    }
+}
+
 /// `world_from_head` of a spectator before the pin deck, who looks at the pins from above the lane.
 pub fn spectator(headpin_z: f64) -> Pose {
     let position = DVec3::new(0.25, 0.75, headpin_z + 1.3);
-    let target = DVec3::new(0.0, 0.1, headpin_z - 0.4);
+    towards(position, DVec3::new(0.0, 0.1, headpin_z - 0.4))
+}
+
+/// Upright at `position`, looking at `target`.
+fn towards(position: DVec3, target: DVec3) -> Pose {
     let way = target - position;
     let yaw = libm::atan2(-way.x, -way.z);
     let pitch = libm::atan2(way.y, libm::sqrt(way.x * way.x + way.z * way.z));

@@ -12,7 +12,7 @@ mod swing;
 use std::collections::VecDeque;
 
 use game::{
-    BallSeen, Button, Config, EventKind, Game, Input, Model, Observation, ParticipantConfig, Phase,
+    BallSeen, Button, Config, EventKind, Game, Input, Model, Observation, ParticipantConfig,
 };
 use glam::{DVec2, DVec3};
 use physics::Pose;
@@ -67,6 +67,8 @@ pub struct Script {
     trigger: f64,
     /// How long the own ball has been away [s].
     waited: f64,
+    /// Throws to make before the first game.
+    practice: u32,
 }
 
 /// What the participant sees in one frame.
@@ -133,9 +135,17 @@ impl Script {
             hand: HandState::still(position, rotation),
             trigger: 0.0,
             waited: 0.0,
+            practice: 0,
             person,
             body,
         }
+    }
+
+    /// The same participant, who first makes `throws` throws that do not count.
+    #[must_use]
+    pub fn practising(mut self, throws: u32) -> Self {
+        self.practice = throws;
+        self
     }
 
     /// Remembers what matters later from what has just happened.
@@ -145,6 +155,7 @@ impl Script {
             match &event.kind {
                 EventKind::GameStarted { button } => self.games.retain(|wanted| wanted != button),
                 EventKind::Released(_) => self.waited = 0.0,
+                EventKind::Settled { .. } => self.practice = self.practice.saturating_sub(1),
                 _ => {}
             }
         }
@@ -153,12 +164,12 @@ impl Script {
     /// Fills the list of actions when it has run out; leaves it empty while there is nothing to do but wait.
     fn decide(&mut self, sight: &Sight) {
         let from = self.world_ground(sight);
-        let actions = if sight.alley.playing.is_none() {
+        let actions = if sight.alley.playing.is_none() && self.practice == 0 {
             self.games
                 .front()
                 .map(|button| plan::press(*button, &sight.alley, &self.person, from))
         } else if let Some(ball) = sight.held_ball() {
-            let is_ready = sight.alley.phase == Phase::Ready;
+            let is_ready = sight.alley.is_set;
             let lateness = 0.5 * self.dt;
             is_ready.then(|| {
                 plan::deliver(&sight.alley, ball, &self.person, lateness, &mut self.random)

@@ -1,6 +1,7 @@
 //! The main thread's eye on the headset's: does the runtime answer, has the thread ended?
 
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
@@ -8,6 +9,7 @@ use anyhow::{Result, anyhow};
 use serde_json::json;
 
 use super::Shared;
+use crate::study::attendant::Attendant;
 
 /// A frame that takes longer than this is a runtime that does not answer.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -18,16 +20,23 @@ const INTERVAL: Duration = Duration::from_millis(100);
 pub struct Watch {
     shared: Arc<Shared>,
     ended: Receiver<Result<()>>,
+    /// Who attends to a study's session.
+    attendant: Option<Attendant>,
     is_silent: bool,
     asked_to_stop: Option<Instant>,
 }
 
 impl Watch {
     /// Over the thread that sends its outcome to `ended`.
-    pub fn new(shared: Arc<Shared>, ended: Receiver<Result<()>>) -> Self {
+    pub fn new(
+        shared: Arc<Shared>,
+        ended: Receiver<Result<()>>,
+        attendant: Option<Attendant>,
+    ) -> Self {
         Self {
             shared,
             ended,
+            attendant,
             is_silent: false,
             asked_to_stop: None,
         }
@@ -57,6 +66,9 @@ impl Watch {
             }
             Err(RecvTimeoutError::Timeout) => {}
         }
+        if let Err(error) = self.attend() {
+            return Some(Err(error));
+        }
         let is_silent = self.shared.silence() > PATIENCE;
         if is_silent != self.is_silent {
             self.is_silent = is_silent;
@@ -71,6 +83,21 @@ impl Watch {
             }
         }
         None
+    }
+
+    /// Lets whoever attends to a study's session do what is due; one that is over stops the play.
+    fn attend(&mut self) -> Result<()> {
+        let Some(attendant) = &mut self.attendant else {
+            return Ok(());
+        };
+        let is_over = self.shared.with(|session| {
+            attendant.attend(session)?;
+            Ok(session.is_over())
+        })?;
+        if is_over == Some(true) {
+            self.shared.stop.store(true, Ordering::Relaxed);
+        }
+        Ok(())
     }
 
     fn tell(&self) -> Result<()> {

@@ -212,7 +212,7 @@ impl Camera {
 }
 
 /// Whether a thing needs a place in every snapshot.
-fn can_move(model: Model) -> bool {
+pub fn can_move(model: Model) -> bool {
     matches!(
         model,
         Model::Pin(_)

@@ -17,8 +17,6 @@ pub struct Plan {
     pub first: Colour,
     /// What is asked.
     pub questionnaire: Questionnaire,
-    /// Where forms are filled in.
-    pub answered_in: AnsweredIn,
 }
 
 /// The course of a session under way.
@@ -81,9 +79,23 @@ impl Course {
     fn recall(&mut self, note: &serde_json::Value) -> Result<()> {
         let note: Note = serde_json::from_value(note.clone())
             .context("the journal has a note that cannot be understood")?;
-        if let Note::Form { act, .. } = note {
-            self.act(act.at_s, act.act)
-                .context("the journal's answers do not fit the study's questionnaire")?;
+        match note {
+            Note::Form {
+                act, answered_in, ..
+            } => {
+                self.act(act.at_s, act.act, answered_in)
+                    .context("the journal's answers do not fit the study's questionnaire")?;
+            }
+            Note::Reached {
+                place: Place::Complete,
+                ..
+            } => {
+                self.debriefed();
+            }
+            Note::Stopped { .. } => {
+                self.happen(Happening::Stop);
+            }
+            Note::Consent(_) | Note::Reached { .. } | Note::Remark { .. } | Note::Clock { .. } => {}
         }
         Ok(())
     }
@@ -119,12 +131,17 @@ impl Course {
         self.happen(happening)
     }
 
-    /// Takes an act at the form that is due, at `at_s` since the session began [s]; returns the note of it, and where the
+    /// Takes an act at the form that is due, at `at_s` since the session began [s], done in `answered_in`; returns the note of it, and where the
     /// session has got to by it.
     ///
     /// # Errors
     /// When no form is due or the act does not fit; nothing has changed then.
-    pub fn act(&mut self, at_s: f64, act: Act) -> Result<(Note, Option<Place>)> {
+    pub fn act(
+        &mut self,
+        at_s: f64,
+        act: Act,
+        answered_in: AnsweredIn,
+    ) -> Result<(Note, Option<Place>)> {
         let Place::Form(stage) = self.protocol.place() else {
             anyhow::bail!("no question is due now");
         };
@@ -138,7 +155,7 @@ impl Course {
         let note = Note::Form {
             form: stage,
             act,
-            answered_in: self.plan.answered_in,
+            answered_in,
         };
         let is_done = form.current().is_none();
         let reached = is_done.then(|| self.happen(Happening::FormDone)).flatten();

@@ -12,24 +12,24 @@ pub const DRAFT: &str = ".part";
 
 /// A file or folder that could not be read or written.
 #[derive(Debug, thiserror::Error)]
-#[error("cannot {action} {path}: {source}; {}", advice(source))]
+#[error("cannot {action} {path}: {problem}; {}", advice(problem))]
 pub struct FileError {
     /// What was tried, as a verb.
     pub action: &'static str,
     /// Which file or folder.
     pub path: PathBuf,
     /// What the system said.
-    pub source: io::Error,
+    pub problem: io::Error,
 }
 
 impl FileError {
     /// For use in `map_err`.
     pub fn at(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> FileError {
         let path = path.to_path_buf();
-        move |source| FileError {
+        move |problem| FileError {
             action,
             path,
-            source,
+            problem,
         }
     }
 }

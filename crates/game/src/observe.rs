@@ -74,6 +74,8 @@ pub struct ButtonSeen {
 pub struct Observation {
     /// What the alley is doing.
     pub phase: Phase,
+    /// Whether the pins are set and nothing rolls, in a game or out of one.
+    pub is_set: bool,
     /// Under which button a game is played.
     pub playing: Option<Button>,
     /// The balls, by number.
@@ -229,6 +231,7 @@ impl Game {
         let lane = &self.room.config.lane;
         Observation {
             phase: self.phase(),
+            is_set: matches!(self.stage, Stage::Ready { .. }),
             playing: self.playing,
             balls: self
                 .room

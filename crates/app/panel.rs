@@ -1,0 +1,306 @@
+//! A panel in the room with the question that is due: read from where one stands, answered by pointing.
+//!
+//! What is pointed at is what the hand covers for the eye, as one points at things far away: the ray goes from the head
+//! through the hand. So it works alike for a controller, a tracked hand and the desk's arm. The trigger chooses.
+
+mod layout;
+mod paint;
+
+use anyhow::Result;
+use experiment::protocol::{AnsweredIn, Place, Who};
+use experiment::questionnaire::Act;
+use glam::{DQuat, DVec2, DVec3, Mat4, Quat, Vec3};
+use physics::Pose;
+use renderer::{Gpu, Instance, Material, MeshData, MeshId, Renderer, TextPainter, TextureId};
+
+use crate::session::Session;
+pub use layout::Choice;
+use layout::{Content, Layout};
+
+/// Size of the panel in the room [m]; a letter of the question is 4 cm high, 1.1 degrees at its distance.
+const SIZE_M: DVec2 = DVec2::new(1.6, 1.0);
+/// How far from the head it appears [m].
+const DISTANCE_M: f64 = 2.0;
+/// Its middle is this much below the eyes, where one looks without raising the head [m].
+const BELOW_EYES_M: f64 = 0.15;
+/// A trigger counts as pulled from here up, and as let go from the other down.
+const PULLED: f64 = 0.6;
+const LET_GO: f64 = 0.4;
+/// Radius of the dot that shows where one points [m].
+const DOT_M: f32 = 0.012;
+
+/// Where the participant points from: eye, hand and trigger.
+#[derive(Debug, Clone, Copy)]
+pub struct Pointing {
+    /// The head, world frame.
+    pub head: Pose,
+    /// The hand, world frame.
+    pub hand: Option<Pose>,
+    /// From 0 (open) to 1 (closed).
+    pub trigger: f64,
+}
+
+/// The panel, whether it is shown or not.
+#[derive(Debug)]
+pub struct Panel {
+    /// Where its answers are given.
+    answered_in: AnsweredIn,
+    /// What is asked, and where it hangs.
+    shown: Option<Shown>,
+    is_pulled: bool,
+}
+
+#[derive(Debug)]
+struct Shown {
+    content: Content,
+    layout: Layout,
+    /// `world_from_panel`; the panel faces +z.
+    pose: Pose,
+    /// Where the participant points at it, in pixels of the layout.
+    at: Option<DVec2>,
+}
+
+impl Panel {
+    /// Nothing yet; answers will have been given in `answered_in`.
+    pub fn new(answered_in: AnsweredIn) -> Self {
+        Self {
+            answered_in,
+            shown: None,
+            is_pulled: false,
+        }
+    }
+
+    /// Shows what is due and takes a choice that is pointed at; never waits.
+    ///
+    /// # Errors
+    /// When the journal cannot be written.
+    pub fn attend(&mut self, session: &mut Session) -> Result<()> {
+        let (content, pointing) = (content(session), session.pointing());
+        self.show(content, pointing.map(|pointing| pointing.head));
+        let (Some(shown), Some(pointing)) = (&mut self.shown, pointing) else {
+            self.is_pulled = false;
+            return Ok(());
+        };
+        shown.at = pointing
+            .hand
+            .and_then(|hand| pixel(&shown.pose, pointing.head.position, hand.position));
+        let was_pulled = self.is_pulled;
+        self.is_pulled = if was_pulled {
+            pointing.trigger > LET_GO
+        } else {
+            pointing.trigger > PULLED
+        };
+        let choice = shown.at.and_then(|at| shown.layout.choice(at)).cloned();
+        match choice {
+            Some(choice) if self.is_pulled && !was_pulled => {
+                choose(&choice, session, self.answered_in)
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// A new question hangs where the last one did; the first one of a form before the head.
+    fn show(&mut self, content: Option<Content>, head: Option<Pose>) {
+        let Some(content) = content else {
+            self.shown = None;
+            return;
+        };
+        match &mut self.shown {
+            Some(shown) if shown.content == content => {}
+            Some(shown) => {
+                shown.layout = Layout::of(&content);
+                shown.content = content;
+            }
+            None => {
+                // Who is not tracked gets it later.
+                self.shown = head.map(|head| Shown {
+                    layout: Layout::of(&content),
+                    content,
+                    pose: before(head),
+                    at: None,
+                });
+            }
+        }
+    }
+
+    /// Where a choice lies in the room, for a participant that is a program; `None` while it is not shown.
+    pub fn place_of(&self, choice: &Choice) -> Option<DVec3> {
+        let shown = self.shown.as_ref()?;
+        let area = shown
+            .layout
+            .areas
+            .iter()
+            .find(|area| area.choice == *choice)?;
+        let share = 0.5 * (area.from + area.to) / layout::SIZE_PX.as_dvec2() - 0.5;
+        let on_panel = DVec3::new(share.x * SIZE_M.x, -share.y * SIZE_M.y, 0.0);
+        Some(shown.pose.transform_point(on_panel))
+    }
+}
+
+/// What is to be read now.
+fn content(session: &Session) -> Option<Content> {
+    let course = session.course()?;
+    if let Some(form) = session.form()
+        && let Some(item) = form.current()
+    {
+        return Some(Content::Item {
+            item: item.clone(),
+            position: form.position(),
+            given: form.given().cloned(),
+        });
+    }
+    match course.protocol().place() {
+        Place::Debriefing => Some(Content::Words(
+            "Thank you. You can take the headset off; the experimenter tells you more.".to_owned(),
+        )),
+        _ => None,
+    }
+}
+
+fn choose(choice: &Choice, session: &mut Session, answered_in: AnsweredIn) -> Result<()> {
+    match choice {
+        Choice::Answer(answer) => session.answer(Act::Answer(answer.clone()), answered_in),
+        Choice::Skip => session.answer(Act::Skip, answered_in),
+        // Before the first item there is none: nothing happens.
+        Choice::Back => session.answer(Act::Back, answered_in).or_else(|error| {
+            if error.is::<experiment::questionnaire::AnswerError>() {
+                Ok(())
+            } else {
+                Err(error)
+            }
+        }),
+        Choice::Stop => session.stop(Who::Participant, "chose Stop on the panel".to_owned()),
+    }
+}
+
+/// Upright before a head, facing it.
+fn before(head: Pose) -> Pose {
+    let ahead = head.rotation * DVec3::NEG_Z;
+    let level = DVec3::new(ahead.x, 0.0, ahead.z);
+    // Who looks straight down or up gets it down the lane.
+    let ahead = level.try_normalize().unwrap_or(DVec3::NEG_Z);
+    let yaw = libm::atan2(-ahead.x, -ahead.z);
+    Pose {
+        position: head.position + ahead * DISTANCE_M - DVec3::Y * BELOW_EYES_M,
+        rotation: DQuat::from_rotation_y(yaw),
+    }
+}
+
+/// Where the line from the eye through the hand meets the panel, in its pixels; `None` beside it.
+fn pixel(panel: &Pose, eye: DVec3, hand: DVec3) -> Option<DVec2> {
+    let [eye, hand] = [eye, hand].map(|point| panel.inverse().transform_point(point));
+    let way = hand - eye;
+    // The panel faces +z: who points at it looks along -z.
+    if way.z >= -1e-6 || eye.z <= 0.0 {
+        return None;
+    }
+    let hit = eye - way * (eye.z / way.z);
+    let share = DVec2::new(hit.x / SIZE_M.x + 0.5, 0.5 - hit.y / SIZE_M.y);
+    let is_on = (0.0..=1.0).contains(&share.x) && (0.0..=1.0).contains(&share.y);
+    is_on.then(|| share * layout::SIZE_PX.as_dvec2())
+}
+
+/// The panel's mesh and picture, held by a renderer.
+pub struct PanelStock {
+    painter: TextPainter,
+    quad: MeshId,
+    dot: MeshId,
+    texture: TextureId,
+    /// What the picture shows.
+    painted: Option<Content>,
+}
+
+impl PanelStock {
+    /// An empty panel.
+    ///
+    /// # Errors
+    /// When the renderer does not take it.
+    pub fn new(gpu: &Gpu, renderer: &mut Renderer) -> Result<Self> {
+        let size = SIZE_M.as_vec2();
+        Ok(Self {
+            painter: TextPainter::new(gpu),
+            quad: renderer.add_mesh(&MeshData::quad(size.x, size.y))?,
+            dot: renderer.add_mesh(&MeshData::quad(2.0 * DOT_M, 2.0 * DOT_M))?,
+            texture: renderer.add_texture(&renderer::RgbaImage::new(1, 1))?,
+            painted: None,
+        })
+    }
+
+    /// What is to be drawn of `panel`; paints its picture when it has changed.
+    ///
+    /// # Errors
+    /// When the picture cannot be painted.
+    pub fn instances(&mut self, panel: &Panel, renderer: &mut Renderer) -> Result<Vec<Instance>> {
+        let Some(shown) = &panel.shown else {
+            return Ok(Vec::new());
+        };
+        if self.painted.as_ref() != Some(&shown.content) {
+            let image = paint::paint(&mut self.painter, &shown.content, &shown.layout)?;
+            renderer.update_texture(self.texture, &image)?;
+            self.painted = Some(shown.content.clone());
+        }
+        let material = Material {
+            texture: Some(self.texture),
+            ..Material::unlit([1.0; 3])
+        };
+        let mut instances = vec![Instance {
+            mesh: self.quad,
+            material,
+            world_from_mesh: placed(&shown.pose, Vec3::ZERO),
+        }];
+        if let Some(at) = shown.at {
+            let share = at / layout::SIZE_PX.as_dvec2() - 0.5;
+            let offset = DVec3::new(share.x * SIZE_M.x, -share.y * SIZE_M.y, 0.005);
+            instances.push(Instance {
+                mesh: self.dot,
+                material: Material::unlit([1.0, 0.6, 0.05]),
+                world_from_mesh: placed(&shown.pose, offset.as_vec3()),
+            });
+        }
+        Ok(instances)
+    }
+}
+
+fn placed(pose: &Pose, offset: Vec3) -> Mat4 {
+    let rotation: Quat = pose.rotation.as_quat().normalize();
+    Mat4::from_rotation_translation(rotation, pose.position.as_vec3() + rotation * offset)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn head() -> Pose {
+        Pose {
+            position: DVec3::new(1.0, 1.7, 3.0),
+            rotation: DQuat::from_rotation_y(0.7) * DQuat::from_rotation_x(-0.3),
+        }
+    }
+
+    #[test]
+    fn the_panel_hangs_upright_before_the_head_and_faces_it() {
+        let pose = before(head());
+        let to_head = head().position - pose.position;
+        let level = DVec3::new(to_head.x, 0.0, to_head.z);
+        assert!((level.length() - DISTANCE_M).abs() < 1e-12);
+        assert!((pose.rotation * DVec3::Z).angle_between(level) < 1e-7);
+        assert!((pose.rotation * DVec3::Y).distance(DVec3::Y) < 1e-12);
+    }
+
+    #[test]
+    fn a_hand_points_at_what_it_covers() {
+        let pose = before(head());
+        let size = layout::SIZE_PX.as_dvec2();
+        for (x, y) in [(0.5, 0.5), (0.1, 0.9), (0.99, 0.02)] {
+            let on_panel = DVec3::new((x - 0.5) * SIZE_M.x, (0.5 - y) * SIZE_M.y, 0.0);
+            let target = pose.transform_point(on_panel);
+            let hand = head().position.lerp(target, 0.3);
+            let at = pixel(&pose, head().position, hand).expect("it points at the panel");
+            assert!(at.distance(DVec2::new(x, y) * size) < 1e-6, "{at}");
+        }
+        let away = head().position - (pose.position - head().position);
+        assert_eq!(pixel(&pose, head().position, away), None);
+        let beside = head().position + DVec3::Y;
+        assert_eq!(pixel(&pose, head().position, beside), None);
+    }
+}
