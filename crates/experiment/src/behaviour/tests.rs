@@ -294,3 +294,38 @@ fn episode_without_a_head_is_not_scored() {
         Episodes::default()
     );
 }
+
+#[test]
+fn walker_who_stops_has_not_dodged() {
+    // One metre a second until 3.25 s, then to a stand within 0.3 s; a gait of 2 cm.
+    let way = |t: f64| {
+        t.min(3.25) + 0.3 * (0.5 - (1.0 - ((t - 3.25) / 0.3).clamp(0.0, 1.0)).powi(2) / 2.0) - 0.15
+    };
+    let walker = |aside: f64| -> Vec<HeadSample> {
+        (0..540)
+            .map(|frame| f64::from(frame) / RATE)
+            .map(|t| {
+                let gait = 0.02 * (TAU * 1.8 * t).sin();
+                let s = ((t - 3.25) / 0.35).clamp(0.0, 1.0);
+                HeadSample {
+                    time_s: t,
+                    position: Some([way(t), 1.6 + gait, aside * s * s * (3.0 - 2.0 * s)]),
+                }
+            })
+            .collect()
+    };
+    let found = |aside: f64| {
+        let target = [way(3.8), 1.6, 0.0];
+        let samples = thrown(target, [-1.0, 1.0, 6.0], 3.0, 3.8);
+        let body = Body {
+            radius_m: 0.1,
+            samples: &samples,
+        };
+        let found = episodes(&walker(aside), &body, &Settings::default());
+        assert_eq!(found.scored.len(), 1);
+        found.scored[0].response
+    };
+    let (stopped, dodged) = (found(0.0), found(0.3));
+    assert_eq!(stopped.onset_s, None, "{stopped:?}");
+    assert!(dodged.onset_s.is_some(), "{dodged:?}");
+}

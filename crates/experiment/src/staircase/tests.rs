@@ -244,3 +244,30 @@ fn check_refuses_what_cannot_be_run() {
     }
     assert_eq!(good.check(), Ok(()));
 }
+
+#[test]
+fn catch_trials_do_not_move_the_staircase() {
+    let differences = |at_catches: Reply| -> Vec<f64> {
+        let mut staircase = Staircase::new(&plan(Rule::OneUpTwoDown), 6).unwrap();
+        let mut tried = Vec::new();
+        while let Some(trial) = staircase.next_trial().unwrap() {
+            let heard = if trial.difference > 0.2 {
+                Reply::Different
+            } else {
+                Reply::Same
+            };
+            staircase
+                .reply(if trial.difference > 0.0 {
+                    heard
+                } else {
+                    at_catches
+                })
+                .unwrap();
+            if trial.difference > 0.0 {
+                tried.push(trial.difference);
+            }
+        }
+        tried
+    };
+    assert_eq!(differences(Reply::Same), differences(Reply::Different));
+}
