@@ -56,6 +56,13 @@ for dataset in study/data bids still; do
   scripts/bids-validate.sh "$made/all/$dataset" || { [ $? -eq 3 ] && [ -z "$in_ci" ]; }
 done
 
+step "a whole study"
+# Eighteen participants, both games of ten frames each, answers included; then the validator and the analysis read what it left.
+bowling=${CARGO_TARGET_DIR:-target}/debug/bowling
+time "$bowling" study simulate "$made/eighteen" --subjects 18 --seed 1997
+scripts/bids-validate.sh "$made/eighteen/data" || { [ $? -eq 3 ] && [ -z "$in_ci" ]; }
+"$bowling" analyse "$made/eighteen" --out "$made/report" >/dev/null
+
 step "docs"
 RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked
 

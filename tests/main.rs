@@ -2,6 +2,8 @@
 
 /// What accuracy costs: dials, references, files.
 mod accuracy;
+/// Tables in, reports out; power.
+mod analyse;
 /// Meshes and textures against their generator.
 mod assets;
 /// What is refused, and with which sentence.

@@ -1,6 +1,7 @@
 //! The command line: what a person may ask for, and what is refused before anything starts.
 
 mod accuracy;
+mod analyse;
 mod capture;
 mod compare;
 mod study;
@@ -12,6 +13,7 @@ use clap::error::ErrorKind;
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 
 pub use accuracy::AccuracyArguments;
+pub use analyse::{AnalyseArguments, PowerArguments};
 pub use capture::{CaptureArguments, ViewChoice};
 pub use compare::{CompareArguments, Sweep};
 pub use study::{
@@ -154,6 +156,16 @@ pub enum Command {
     /// A study is a folder: `plan/` with what was decided and who plays what, for the experimenter's eyes, and `data/`, a BIDS
     /// dataset that can be shared and never says what a button meant. docs/study.md explains every file.
     Study(StudyArguments),
+    /// Analyse a study or a table: the paper's tables, and what an honest reader needs beside them.
+    ///
+    /// Prints the report and writes report.html, which stands alone, report.json with every number, and the figures.
+    /// docs/analysis.md names the columns of a table and explains the numbers.
+    Analyse(AnalyseArguments),
+    /// Say how many subjects a study needs: simulates studies and analyses them.
+    ///
+    /// Prints how often the paper's chi-squared test and the quasi-binomial F test reject, by number of subjects, with
+    /// intervals, how often they reject where there is no effect, and what follows. docs/analysis.md says from what.
+    Power(PowerArguments),
 }
 
 /// Who or what bowls.

@@ -4,6 +4,7 @@
 //! [`shot`], [`strike_map`], [`effects`](mod@effects), [`accuracy`](mod@accuracy) and [`compare`] are the commands; a [`session::Session`] takes one input per displayed frame from any device.
 
 pub mod accuracy;
+pub mod analyse;
 pub mod args;
 pub mod boundary;
 pub mod capture;
@@ -20,6 +21,7 @@ pub mod output;
 pub mod panel;
 pub mod pictures;
 pub mod play;
+pub mod power;
 pub mod query;
 pub mod rehearsal;
 pub mod replay;
@@ -87,6 +89,8 @@ fn obey(arguments: &Arguments) -> Result<()> {
         Some(Command::Accuracy(accuracy)) => {
             accuracy::accuracy(accuracy, &root::find(arguments.root.as_deref())?)
         }
+        Some(Command::Analyse(arguments)) => analyse::analyse(arguments),
+        Some(Command::Power(arguments)) => power::power(arguments),
         Some(Command::Compare(compare)) => {
             compare::compare(compare, &root::find(arguments.root.as_deref())?)
         }

@@ -292,7 +292,7 @@ fn noticed_agrees_with_its_reference() {
     let reference = reference("table4_noticed");
     let table = Table::read(&data("01a_uno_slater_reconstructed.csv")).unwrap();
     let subjects = Subjects::new(table).unwrap();
-    let papers = noticed::Noticed::of(&subjects);
+    let papers = noticed::Noticed::of(&subjects).unwrap();
     assert!(papers.is_papers);
     let mut found = papers.json();
     // Odds ratios are written as text with ten digits, because they may be infinite.
@@ -320,4 +320,40 @@ fn noticed_agrees_with_its_reference() {
     let mut wrong = Vec::new();
     compare("table4", &expected, &found, 0.0, &mut wrong);
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// What the paper prints, to its digits: Tables 5 and 6. Its change(3).E is the fourth cycle's, and the standard errors
+/// are between those of the fourth cycle and the converged ones.
+#[test]
+fn reconstructed_study_has_the_papers_figures() {
+    let (_, regression) = regression("01a_uno_slater_reconstructed");
+    let fit = &regression.fit;
+    assert!((fit.deviance - 12.727).abs() < 5e-4 && fit.df() == 8);
+    let printed = [
+        1.501, -0.9969, 0.7149, 2.112, -0.6980, -1.580, -1.496, 3.786, -3.836, -0.5273,
+    ];
+    let half_a_digit = [5e-4, 5e-5, 5e-5, 5e-4, 5e-5, 5e-4, 5e-4, 5e-4, 5e-4, 5e-5];
+    let fourth = &newton::cycles(&fit.rows, json::PAPERS_CYCLE)[json::PAPERS_CYCLE - 1];
+    for (j, (printed, half)) in printed.into_iter().zip(half_a_digit).enumerate() {
+        let found = if j == 9 {
+            fourth.beta[j]
+        } else {
+            fit.estimate[j]
+        };
+        assert!(
+            (found - printed).abs() <= half,
+            "column {j}: {printed} as {found}"
+        );
+    }
+    assert!((fit.estimate[9] + 0.5274).abs() < 5e-5);
+    let printed = [
+        1.216, 1.125, 0.8994, 0.9312, 0.2461, 0.7133, 1.213, 1.440, 1.443, 1.116,
+    ];
+    for (j, printed) in printed.into_iter().enumerate() {
+        let (early, converged) = (fourth.errors[j], fit.error[j]);
+        assert!(
+            early < printed && printed < converged,
+            "column {j}: {early}, {printed}, {converged}"
+        );
+    }
 }

@@ -25,17 +25,21 @@ pub struct Noticed {
 const PAPER: [[u32; 2]; 3] = [[3, 3], [0, 6], [6, 0]];
 
 impl Noticed {
-    /// Counts `subjects`; the paper's counts where the table does not have the answers.
-    pub fn of(subjects: &Subjects) -> Noticed {
-        if !subjects.has("noticed") || !subjects.has_change() {
+    /// Counts `subjects`; the paper's counts where the table does not have the answers, and nothing where it does not
+    /// even say what changed.
+    pub fn of(subjects: &Subjects) -> Option<Noticed> {
+        if !subjects.has_change() {
+            return None;
+        }
+        if !subjects.has("noticed") {
             let rows = PAPER.iter().copied().enumerate().collect();
-            return Noticed {
+            return Some(Noticed {
                 rows,
                 is_papers: true,
                 answered: 18,
                 missing: 0,
                 said: Vec::new(),
-            };
+            });
         }
         let mut counts = [[0_u32; 2]; 3];
         let mut noticed = Noticed {
@@ -62,7 +66,7 @@ impl Noticed {
             .enumerate()
             .filter(|(_, row)| row[0] + row[1] > 0)
             .collect();
-        noticed
+        Some(noticed)
     }
 
     fn counts(&self) -> Vec<[u32; 2]> {
