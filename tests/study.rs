@@ -8,7 +8,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::OnceLock;
 use std::time::Duration;
 
-use bowling_app::panel::{Choice, Panel};
+use bowling_app::panel::{Choice, Panel, PanelStock};
 use bowling_app::pictures::Wanted;
 use bowling_app::session::Session;
 use bowling_app::study::seat::{self, Guest};
@@ -16,10 +16,11 @@ use experiment::journal::Lines;
 use experiment::protocol::{AnsweredIn, Place};
 use experiment::questionnaire::Answer;
 use experiment::random::SplitMix64;
-use experiment::study::Study;
+use experiment::study::{ParticipantId, Study};
 use game::{Input, Tracked};
 use glam::DVec3;
 use physics::Pose;
+use renderer::{BackendChoice, Fov, Gpu, Renderer, RendererSettings, Scene, View};
 use serde_json::Value;
 
 use crate::support::{bowling, fresh_folder};
@@ -345,9 +346,9 @@ fn a_folder_that_holds_something_and_one_that_is_none_are_refused() {
     assert_eq!(files(&folder).len(), 1);
 }
 
-#[test]
-fn a_hand_answers_by_pointing() {
-    let folder = new_study("study-panel", "1");
+/// A session of a new study, for a person at the desk.
+fn seated(name: &str) -> (Study, ParticipantId, Session) {
+    let folder = new_study(name, "1");
     let study = Study::open(&folder).expect("just made");
     let lock = study.lock().expect("nobody else has it");
     let who = study.admit(&lock, 1).expect("a free slot").participant;
@@ -361,7 +362,67 @@ fn a_hand_answers_by_pointing() {
     };
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let setup = seat::setup(&study, &lock, guest, root).expect("the shipped settings");
-    let mut session = Session::start(setup).expect("a session");
+    let session = Session::start(setup).expect("a session");
+    (study, who, session)
+}
+
+#[test]
+fn the_panel_is_seen_where_it_is_pointed_at() {
+    let (_, _, mut session) = seated("study-seen");
+    let mut panel = Panel::new(AnsweredIn::Headset);
+    let head = Pose::from_position(DVec3::new(0.0, 1.7, 0.0));
+    let input = Input {
+        head: Some(Tracked::at(head)),
+        steps: 8,
+        ..Input::default()
+    };
+    session.frame(input).expect("writable");
+    panel.attend(&mut session).expect("writable");
+    let gpu = Gpu::new(BackendChoice::Auto).expect("a driver");
+    let mut renderer = Renderer::new(&gpu, RendererSettings::default()).expect("it draws");
+    let mut stock = PanelStock::new(&gpu, &mut renderer).expect("it draws");
+    let instances = stock.instances(&panel, &mut renderer).expect("it paints");
+    let scene = Scene {
+        instances,
+        ..Scene::default()
+    };
+    let world = session.game().head_pose_world().expect("it is tracked");
+    let view = View {
+        position: world.position.as_vec3(),
+        rotation: world.rotation.as_quat(),
+        fov: Fov::from_aspect(0.8, 1.5),
+    };
+    let (width, height) = (900, 600);
+    let images = renderer
+        .render(&scene, &[view], width, height)
+        .expect("drawn");
+    let folder = fresh_folder("study-seen-picture");
+    images[0].save(folder.join("panel.png")).expect("writable");
+    let color = |at: DVec3| {
+        let [x, y] = view
+            .pixel_of(at.as_vec3(), width, height)
+            .expect("in sight");
+        images[0].get_pixel(x as u32, y as u32).0
+    };
+    let answer = |id: &str| {
+        Choice::Answer(Answer::Choice {
+            chosen: vec![id.to_owned()],
+            other: String::new(),
+        })
+    };
+    // The box's edge, beside its words, is lighter than the ground between two boxes, and Stop is red.
+    let place = |choice: &Choice| panel.place_of(choice).expect("it is shown");
+    let (one, two) = (place(&answer("18-24")), place(&answer("25-34")));
+    let box_edge = color(one - DVec3::X * 0.3);
+    let between = color(0.5 * (one + two) - DVec3::X * 0.3);
+    assert!(box_edge[2] > between[2] + 20, "{box_edge:?} {between:?}");
+    let stop = color(place(&Choice::Stop) - DVec3::X * 0.12);
+    assert!(stop[0] > 2 * stop[2], "{stop:?}");
+}
+
+#[test]
+fn a_hand_answers_by_pointing_and_stops_at_the_sign() {
+    let (study, who, mut session) = seated("study-panel");
     let mut panel = Panel::new(AnsweredIn::Headset);
     let item = |session: &Session| {
         let form = session.form()?;
@@ -414,6 +475,16 @@ fn a_hand_answers_by_pointing() {
     assert_eq!(panel.place_of(&Choice::Stop), None);
     let course = session.course().expect("a study's");
     assert_eq!(course.protocol().place(), Place::Training { left: 1 });
+    // The stop sign hangs while balls are thrown: a glance at it does nothing, nor does a short pull.
+    let sign = panel.stop_sign().expect("it hangs");
+    for trigger in [0.0, 1.0, 1.0, 0.0] {
+        frame(&mut session, &mut panel, Some(sign), trigger);
+    }
+    assert!(!session.is_over());
+    for _ in 0..100 {
+        frame(&mut session, &mut panel, Some(sign), 1.0);
+    }
+    assert!(session.is_over());
     session
         .finish(None, Wanted { video: false }, &mut |_| ())
         .expect("writable");

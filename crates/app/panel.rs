@@ -5,6 +5,7 @@
 
 mod layout;
 mod paint;
+mod stop;
 
 use anyhow::Result;
 use experiment::protocol::{AnsweredIn, Place, Who};
@@ -16,6 +17,7 @@ use renderer::{Gpu, Instance, Material, MeshData, MeshId, Renderer, TextPainter,
 use crate::session::Session;
 pub use layout::Choice;
 use layout::{Content, Layout};
+use stop::StopSign;
 
 /// Size of the panel in the room [m]; a letter of the question is 4 cm high, 1.1 degrees at its distance.
 const SIZE_M: DVec2 = DVec2::new(1.6, 1.0);
@@ -47,6 +49,7 @@ pub struct Panel {
     answered_in: AnsweredIn,
     /// What is asked, and where it hangs.
     shown: Option<Shown>,
+    stop: StopSign,
     is_pulled: bool,
 }
 
@@ -66,6 +69,7 @@ impl Panel {
         Self {
             answered_in,
             shown: None,
+            stop: StopSign::default(),
             is_pulled: false,
         }
     }
@@ -76,6 +80,7 @@ impl Panel {
     /// When the journal cannot be written.
     pub fn attend(&mut self, session: &mut Session) -> Result<()> {
         let (content, pointing) = (content(session), session.pointing());
+        self.stop.attend(session, pointing)?;
         self.show(content, pointing.map(|pointing| pointing.head));
         let (Some(shown), Some(pointing)) = (&mut self.shown, pointing) else {
             self.is_pulled = false;
@@ -121,6 +126,11 @@ impl Panel {
                 });
             }
         }
+    }
+
+    /// Where the stop sign hangs in the room; `None` while nothing is played.
+    pub fn stop_sign(&self) -> Option<DVec3> {
+        self.stop.pose.map(|pose| pose.position)
     }
 
     /// Where a choice lies in the room, for a participant that is a program; `None` while it is not shown.
@@ -188,6 +198,12 @@ fn before(head: Pose) -> Pose {
 
 /// Where the line from the eye through the hand meets the panel, in its pixels; `None` beside it.
 fn pixel(panel: &Pose, eye: DVec3, hand: DVec3) -> Option<DVec2> {
+    share(panel, SIZE_M, eye, hand).map(|share| share * layout::SIZE_PX.as_dvec2())
+}
+
+/// Where the line from the eye through the hand meets a board of `size` [m], from its upper left corner, each side 1; `None`
+/// beside it.
+fn share(panel: &Pose, size: DVec2, eye: DVec3, hand: DVec3) -> Option<DVec2> {
     let [eye, hand] = [eye, hand].map(|point| panel.inverse().transform_point(point));
     let way = hand - eye;
     // The panel faces +z: who points at it looks along -z.
@@ -195,9 +211,9 @@ fn pixel(panel: &Pose, eye: DVec3, hand: DVec3) -> Option<DVec2> {
         return None;
     }
     let hit = eye - way * (eye.z / way.z);
-    let share = DVec2::new(hit.x / SIZE_M.x + 0.5, 0.5 - hit.y / SIZE_M.y);
+    let share = DVec2::new(hit.x / size.x + 0.5, 0.5 - hit.y / size.y);
     let is_on = (0.0..=1.0).contains(&share.x) && (0.0..=1.0).contains(&share.y);
-    is_on.then(|| share * layout::SIZE_PX.as_dvec2())
+    is_on.then_some(share)
 }
 
 /// The panel's mesh and picture, held by a renderer.
@@ -206,6 +222,7 @@ pub struct PanelStock {
     quad: MeshId,
     dot: MeshId,
     texture: TextureId,
+    stop: (MeshId, TextureId),
     /// What the picture shows.
     painted: Option<Content>,
 }
@@ -217,8 +234,15 @@ impl PanelStock {
     /// When the renderer does not take it.
     pub fn new(gpu: &Gpu, renderer: &mut Renderer) -> Result<Self> {
         let size = SIZE_M.as_vec2();
+        let stop_size = stop::SIZE_M.as_vec2();
+        let mut painter = TextPainter::new(gpu);
+        let sign = paint::stop_sign(&mut painter)?;
         Ok(Self {
-            painter: TextPainter::new(gpu),
+            painter,
+            stop: (
+                renderer.add_mesh(&MeshData::quad(stop_size.x, stop_size.y))?,
+                renderer.add_texture(&sign)?,
+            ),
             quad: renderer.add_mesh(&MeshData::quad(size.x, size.y))?,
             dot: renderer.add_mesh(&MeshData::quad(2.0 * DOT_M, 2.0 * DOT_M))?,
             texture: renderer.add_texture(&renderer::RgbaImage::new(1, 1))?,
@@ -231,23 +255,28 @@ impl PanelStock {
     /// # Errors
     /// When the picture cannot be painted.
     pub fn instances(&mut self, panel: &Panel, renderer: &mut Renderer) -> Result<Vec<Instance>> {
+        let mut instances = Vec::new();
+        if let Some(pose) = &panel.stop.pose {
+            let (mesh, texture) = self.stop;
+            instances.push(Instance {
+                mesh,
+                material: picture(texture),
+                world_from_mesh: placed(pose, Vec3::ZERO),
+            });
+        }
         let Some(shown) = &panel.shown else {
-            return Ok(Vec::new());
+            return Ok(instances);
         };
         if self.painted.as_ref() != Some(&shown.content) {
             let image = paint::paint(&mut self.painter, &shown.content, &shown.layout)?;
             renderer.update_texture(self.texture, &image)?;
             self.painted = Some(shown.content.clone());
         }
-        let material = Material {
-            texture: Some(self.texture),
-            ..Material::unlit([1.0; 3])
-        };
-        let mut instances = vec![Instance {
+        instances.push(Instance {
             mesh: self.quad,
-            material,
+            material: picture(self.texture),
             world_from_mesh: placed(&shown.pose, Vec3::ZERO),
-        }];
+        });
         if let Some(at) = shown.at {
             let share = at / layout::SIZE_PX.as_dvec2() - 0.5;
             let offset = DVec3::new(share.x * SIZE_M.x, -share.y * SIZE_M.y, 0.005);
@@ -258,6 +287,14 @@ impl PanelStock {
             });
         }
         Ok(instances)
+    }
+}
+
+/// A picture that shines by itself.
+fn picture(texture: TextureId) -> Material {
+    Material {
+        texture: Some(texture),
+        ..Material::unlit([1.0; 3])
     }
 }
 

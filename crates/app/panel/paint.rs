@@ -45,6 +45,25 @@ pub fn paint(painter: &mut TextPainter, content: &Content, layout: &Layout) -> R
     image.context("cannot paint the panel")
 }
 
+/// The picture of the stop sign.
+///
+/// # Errors
+/// When the device does not paint it.
+pub fn stop_sign(painter: &mut TextPainter) -> Result<RgbaImage> {
+    let image = painter.paint(480, 240, STOP.to_array(), |ui| {
+        let brush = ui.ctx().debug_painter();
+        for (words, size, y) in [
+            ("Stop", 96.0, 90.0),
+            ("point here and hold the trigger", 26.0, 190.0),
+        ] {
+            let font = egui::FontId::proportional(size);
+            let middle = egui::pos2(240.0, y);
+            brush.text(middle, egui::Align2::CENTER_CENTER, words, font, LETTERS);
+        }
+    });
+    image.context("cannot paint the stop sign")
+}
+
 /// Text from a corner, wrapped at the other margin.
 fn text(brush: &egui::Painter, words: &str, size: f32, at: egui::Pos2) {
     let width = SIZE_PX.x as f32 - MARGIN - at.x;
