@@ -39,6 +39,8 @@ pub struct Story {
     pub end: Option<End>,
     /// The last line, where a crash cut it short.
     pub torn: Option<Torn>,
+    /// Number of the last whole line.
+    pub lines: usize,
 }
 
 /// Reads the journal of a session that was closed, and of one that was resumed the parts before it.
@@ -53,6 +55,7 @@ pub fn read(path: &Path) -> Result<Recording> {
         events,
         end,
         torn,
+        lines,
         ..
     } = story;
     if let Some(torn) = torn {
@@ -66,7 +69,7 @@ pub fn read(path: &Path) -> Result<Recording> {
         format!(
             "{} line {}: the recording stops here, before its end: it was cut short and cannot be checked",
             path.display(),
-            inputs.len() + events.len()
+            lines
         )
     })?;
     Ok(Recording {
@@ -147,6 +150,7 @@ fn tell(lines: &mut Lines) -> Result<Story> {
         notes: Vec::new(),
         end: None,
         torn: None,
+        lines: 1,
     };
     while let Some(entry) = next_entry(lines)? {
         if story.end.is_some() {
@@ -165,5 +169,6 @@ fn tell(lines: &mut Lines) -> Result<Story> {
         }
     }
     story.torn = lines.torn();
+    story.lines = lines.number() - usize::from(story.torn.is_some());
     Ok(story)
 }

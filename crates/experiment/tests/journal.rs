@@ -129,6 +129,24 @@ fn a_missing_line_a_foreign_file_and_another_version_are_named() {
     assert_eq!(read(newer.as_bytes()).2, Some((1, expected)));
 }
 
+#[cfg(unix)]
+#[test]
+fn a_journal_that_somebody_removes_is_missed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.jsonl");
+    let mut journal = Appender::create(&path).unwrap();
+    journal.append(header()).unwrap();
+    journal.sync().unwrap();
+    fs::remove_file(&path).unwrap();
+    journal.append(json!({ "note": 1 })).unwrap();
+    let error = journal.sync().unwrap_err().to_string();
+    assert!(
+        error.contains("a.jsonl") && error.contains("removed"),
+        "{error}"
+    );
+    assert!(journal.append(json!({ "note": 2 })).is_err());
+}
+
 #[test]
 fn create_refuses_a_file_that_is_there_and_leaves_it_alone() {
     let folder = tempfile::tempdir().unwrap();

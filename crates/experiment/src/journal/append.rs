@@ -201,7 +201,13 @@ impl Writer {
     fn sync(&mut self) -> std::io::Result<()> {
         self.file.flush()?;
         if self.unsynced_since.take().is_some() {
-            self.file.get_ref().sync_data()?;
+            let file = self.file.get_ref();
+            file.sync_data()?;
+            // Writing to a file without a name succeeds, and leaves nothing.
+            #[cfg(unix)]
+            if std::os::unix::fs::MetadataExt::nlink(&file.metadata()?) == 0 {
+                return Err(std::io::Error::other("somebody has removed it"));
+            }
         }
         Ok(())
     }
