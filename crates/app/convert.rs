@@ -42,6 +42,13 @@ pub fn scene<'a>(
     }
 }
 
+/// A hand at a share of its size, from 0 to 1.
+pub fn shrunk_hand(hand: &Visible, stock: &Stock, is_closed: bool, share: f64) -> Option<Instance> {
+    let mut instance = instance(hand, stock, is_closed)?;
+    instance.world_from_mesh *= Mat4::from_scale(Vec3::splat(share as f32));
+    Some(instance)
+}
+
 /// One thing; `None` for what the scenery shows already.
 fn instance(visible: &Visible, stock: &Stock, hand_is_closed: bool) -> Option<Instance> {
     let (piece, piece_scale) = piece(visible, stock, hand_is_closed)?;

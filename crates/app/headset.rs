@@ -4,22 +4,27 @@
 //! shared with the main thread, which can close them in order even if a call never returns. A runtime that ends the session or
 //! dies is connected to anew; the game waits meanwhile.
 
+mod attention;
+mod fading;
 mod frames;
 mod mirror;
+mod notes;
 mod pulses;
+mod shared;
+mod throws;
 mod watch;
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result};
 use experiment::protocol::AnsweredIn;
-use game::{Button, Config};
-use renderer::headset::{Focus, HeadsetError, HeadsetSession, HeadsetSettings, Note, Readings};
-use renderer::{Renderer, RendererSettings, View};
+use game::{Button, Config, Event, EventKind};
+use renderer::headset::{HeadsetError, HeadsetSession, HeadsetSettings, Note};
+use renderer::{Renderer, RendererSettings};
 use serde_json::json;
 
 use crate::convert::{self, Stock};
@@ -29,7 +34,11 @@ use crate::pictures::{Painter, Wanted};
 use crate::play::{self, Progress};
 use crate::session::{Session, Setup};
 use crate::study::attendant::Attendant;
+use attention::Attention;
+use fading::Fading;
 use frames::FrameTimes;
+use shared::Shared;
+use throws::Throws;
 use watch::Watch;
 
 /// Time between two attempts to connect anew.
@@ -38,61 +47,6 @@ const RETRY: Duration = Duration::from_millis(500);
 const LONGEST_END: Duration = Duration::from_secs(3);
 /// How often the runtime is asked whether it wants frames, while it wants none.
 const IDLE: Duration = Duration::from_millis(10);
-
-/// What the two threads share.
-struct Shared {
-    /// `None` once the session is finished.
-    session: Mutex<Option<Session>>,
-    /// Milliseconds since `began` at which the runtime's thread last came round.
-    beat_ms: AtomicU64,
-    began: Instant,
-    /// What the left eye saw last, world frame.
-    left_eye: Mutex<Option<View>>,
-    /// The experimenter's keys for Red and Blue: pressed since the last frame.
-    keys: [AtomicBool; 2],
-    stop: Arc<AtomicBool>,
-}
-
-impl Shared {
-    fn beat(&self) {
-        let now = self.began.elapsed().as_millis() as u64;
-        self.beat_ms.store(now, Ordering::Relaxed);
-    }
-
-    /// How long the runtime's thread has been silent.
-    fn silence(&self) -> Duration {
-        let beat = Duration::from_millis(self.beat_ms.load(Ordering::Relaxed));
-        self.began.elapsed().saturating_sub(beat)
-    }
-
-    /// The experimenter presses a key; the next frame takes it.
-    fn press(&self, button: Button) {
-        self.keys[button as usize].store(true, Ordering::Relaxed);
-    }
-
-    fn take_press(&self, button: Button) -> bool {
-        self.keys[button as usize].swap(false, Ordering::Relaxed)
-    }
-
-    fn left_eye(&self) -> Option<View> {
-        *self.left_eye.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    fn must_stop(&self) -> bool {
-        self.stop.load(Ordering::Relaxed)
-    }
-
-    /// Does something with the session, unless it is finished.
-    fn with<T>(&self, act: impl FnOnce(&mut Session) -> Result<T>) -> Result<Option<T>> {
-        // A thread that panicked left the journal between two lines: it can still be closed.
-        let mut session = self.session.lock().unwrap_or_else(PoisonError::into_inner);
-        session.as_mut().map(act).transpose()
-    }
-
-    fn note(&self, value: serde_json::Value) -> Result<()> {
-        self.with(|session| session.device(value)).map(|_| ())
-    }
-}
 
 /// Connects, plays until the runtime or Ctrl-C ends it, and leaves the recording in order.
 ///
@@ -136,8 +90,9 @@ pub fn run(
         participant: Participant::new(config.physics.step_hz),
         panel: Panel::new(AnsweredIn::Headset),
         times: FrameTimes::default(),
-        is_paused: false,
-        menu_was_down: false,
+        throws: Throws::default(),
+        attention: Attention::new(),
+        fading: Fading::new(config.hand.lost_grip_s),
         refusal: String::new(),
         config: config.clone(),
         settings,
@@ -208,10 +163,12 @@ struct Player {
     /// What a study asks in the room.
     panel: Panel,
     times: FrameTimes,
-    /// The participant paused by the menu button.
-    is_paused: bool,
-    /// Whether a menu button was down in the last frame.
-    menu_was_down: bool,
+    /// What the hands did around each throw.
+    throws: Throws,
+    /// Whether the participant plays.
+    attention: Attention,
+    /// The hand that the tracker has lost.
+    fading: Fading,
     /// Why the last attempt to connect failed.
     refusal: String,
 }
@@ -227,7 +184,7 @@ impl Player {
             };
             let ended = self.play_on(&mut connected);
             match ended {
-                Ok(()) => return self.shared.note(self.times.summary()),
+                Ok(()) => return self.end(),
                 // Whatever the runtime answers in the middle of a game: it is asked anew before anything is given up.
                 Err(error) if error.is::<HeadsetError>() => {
                     println!("{error:#}. The game waits for the headset; Ctrl-C ends and saves.");
@@ -236,6 +193,14 @@ impl Player {
                 }
                 Err(error) => return Err(error),
             }
+        }
+        self.end()
+    }
+
+    /// What is left to say when nothing more is played.
+    fn end(&mut self) -> Result<()> {
+        if let Some(line) = self.throws.finish() {
+            self.shared.note(line)?;
         }
         self.shared.note(self.times.summary())
     }
@@ -258,6 +223,7 @@ impl Player {
             Err(error) => return Err(error),
         };
         self.refusal.clear();
+        self.attention.reconnect();
         println!("Connected to the headset again: the game goes on.");
         self.shared
             .note(json!({ "reconnected": stage.headset.headset().runtime }))?;
@@ -270,12 +236,15 @@ impl Player {
         loop {
             self.shared.beat();
             for note in stage.headset.poll()? {
-                self.shared.note(note_line(&note))?;
-                if let Some(text) = note_text(&note) {
+                self.shared.note(notes::line(&note))?;
+                if let Some(text) = notes::text(&note) {
                     println!("{text}");
                 }
-                if note == Note::Exit {
-                    return Ok(());
+                self.attention.hear(&note);
+                match note {
+                    Note::Recentred(at) => self.participant.recentre(at),
+                    Note::Exit => return Ok(()),
+                    _ => {}
                 }
             }
             match asked {
@@ -298,29 +267,21 @@ impl Player {
         }
     }
 
-    /// The menu button pauses, and goes on.
-    fn hear_menu(&mut self, readings: &Readings) -> Result<()> {
-        let is_down = readings.hands.iter().any(|hand| hand.menu);
-        if is_down && !self.menu_was_down {
-            self.is_paused = !self.is_paused;
-            self.shared.note(json!({ "paused": self.is_paused }))?;
-        }
-        self.menu_was_down = is_down;
-        Ok(())
-    }
-
     fn frame(&mut self, stage: &mut Stage) -> Result<()> {
         let headset = &mut stage.headset;
         let frame = headset.wait()?;
         let readings = headset.read(&frame)?;
-        self.hear_menu(&readings)?;
-        let is_here = headset.focus() == Focus::Focused && !self.is_paused;
+        if let Some(is_paused) = self.attention.press_menu(&readings) {
+            self.shared.note(json!({ "paused": is_paused }))?;
+        }
+        let is_here = self.attention.is_here(headset.focus());
+        let at = frame.display_time_ns();
         let (participant, panel, keys) = (&mut self.participant, &mut self.panel, &self.shared);
+        let fading = &mut self.fading;
         let played = self.shared.with(|session| {
             let mut input = if is_here {
                 let is_holding = session.game().held().is_some();
-                let (at, period) = (frame.display_time_ns(), frame.period_s());
-                participant.input(&readings, at, period, is_holding)
+                participant.input(&readings, at, frame.period_s(), is_holding)
             } else {
                 participant.pause(&readings)
             };
@@ -333,23 +294,33 @@ impl Player {
             }
             let game = session.game();
             let visible = game.visible_at(participant.share());
-            let scene = convert::scene(visible.iter(), &stage.stock, game.held().is_some());
-            Ok((
-                scene,
-                game.world_from_tracking(),
-                pulses::of(game.events(), held),
-            ))
+            let is_holding = game.held().is_some();
+            let mut scene = convert::scene(visible.iter(), &stage.stock, is_holding);
+            if is_here {
+                let faded = fading.of(&visible, at);
+                scene.instances.extend(faded.and_then(|(hand, share)| {
+                    convert::shrunk_hand(&hand, &stage.stock, is_holding, share)
+                }));
+            } else {
+                fading.forget();
+            }
+            let pulse = pulses::of(game.events(), held);
+            let happened = Happened::among(game.events());
+            Ok((scene, game.world_from_tracking(), pulse, happened))
         })?;
-        let Some((mut scene, rig, pulse)) = played else {
+        let Some((mut scene, rig, pulse, happened)) = played else {
             // The main thread has finished the session without this one.
             headset.skip(frame)?;
             return Ok(());
         };
+        for line in self.throws.follow(at, &readings, happened.released) {
+            self.shared.note(line)?;
+        }
         let panel = stage.panel.instances(&self.panel, &mut stage.renderer)?;
         scene.instances.extend(panel);
         let simulated = frame.woken().elapsed();
         let timing = self.times.of(&frame, simulated);
-        if frame.should_render() {
+        let is_shown = if frame.should_render() {
             let rig = (rig.position.as_vec3(), rig.rotation.as_quat());
             let (views, _) = headset.show(frame, &mut stage.renderer, &scene, rig, false)?;
             *self
@@ -357,50 +328,49 @@ impl Player {
                 .left_eye
                 .lock()
                 .unwrap_or_else(PoisonError::into_inner) = views.first().copied();
+            !views.is_empty()
         } else {
             headset.skip(frame)?;
-        }
+            false
+        };
         if let Some(pulse) = pulse.filter(|_| is_here) {
             let side = self.participant.throwing();
             headset.pulse(side, pulse.amplitude, pulse.seconds)?;
         }
-        let line = self.times.finish(timing);
-        self.shared.note(line)
+        let line = self.times.finish(timing, is_shown);
+        self.shared.note(line)?;
+        if happened.has_ended {
+            self.shared.note(self.times.game_summary())?;
+        }
+        if happened.has_begun {
+            self.times.begin_game();
+        }
+        Ok(())
     }
 }
 
-/// A note as the journal keeps it.
-fn note_line(note: &Note) -> serde_json::Value {
-    match note {
-        Note::Focus(focus) => json!({ "focus": format!("{focus:?}").to_lowercase() }),
-        Note::Exit => json!({ "exit": true }),
-        Note::Profile { side, profile } => {
-            json!({ "hand": format!("{side:?}").to_lowercase(), "profile": profile })
-        }
-        Note::BindingsRejected { profile, answer } => {
-            json!({ "bindings_rejected": profile, "answer": answer })
-        }
-        Note::Recentred => json!({ "recentred": true }),
-        Note::Worn(is_worn) => json!({ "worn": is_worn }),
-        Note::RefreshRate(rate) => json!({ "refresh_rate_hz": rate }),
-    }
+/// What a frame's events mean to those who keep account of it.
+#[derive(Clone, Copy, Debug, Default)]
+struct Happened {
+    /// The step at which a hand let go.
+    released: Option<u64>,
+    /// A game began.
+    has_begun: bool,
+    /// A game is over.
+    has_ended: bool,
 }
 
-/// What the experimenter reads of a note; nothing of what is in order.
-fn note_text(note: &Note) -> Option<String> {
-    match note {
-        Note::Profile {
-            side,
-            profile: Some(profile),
-        } => Some(format!("{side:?} hand: {profile}.")),
-        Note::Profile { side, .. } => Some(format!("{side:?} hand: no controller.")),
-        Note::BindingsRejected { profile, answer } => Some(format!(
-            "The runtime refused the bindings of {profile} ({answer}); other controllers work."
-        )),
-        Note::Focus(Focus::Visible) => {
-            Some("The participant is in a menu of the system: the game waits.".to_owned())
+impl Happened {
+    fn among(events: &[Event]) -> Self {
+        let mut happened = Self::default();
+        for event in events {
+            match event.kind {
+                EventKind::Released(_) => happened.released = Some(event.step),
+                EventKind::GameStarted { .. } => happened.has_begun = true,
+                EventKind::GameOver { .. } => happened.has_ended = true,
+                _ => {}
+            }
         }
-        Note::Worn(false) => Some("The headset was taken off.".to_owned()),
-        _ => None,
+        happened
     }
 }

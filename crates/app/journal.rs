@@ -136,6 +136,7 @@ impl From<&Input> for InputLine {
             input.press_blue,
             input.locked[0],
             input.locked[1],
+            input.recentred,
         ];
         let sum = buttons
             .iter()
@@ -169,6 +170,7 @@ impl From<&InputLine> for Input {
             press_red: pressed(2),
             press_blue: pressed(3),
             locked: [pressed(4), pressed(5)],
+            recentred: pressed(6),
             steps: *steps,
             trigger_change: change.as_deref().map(|(age_s, hand)| TriggerChange {
                 age_s: *age_s,
@@ -244,13 +246,14 @@ mod tests {
             press_red: false,
             press_blue: true,
             locked: [false, true],
+            recentred: true,
             steps: 8,
             trigger_change: None,
         };
         let text = serde_json::to_string(&InputLine::from(&input)).expect("plain numbers");
         let line: InputLine = serde_json::from_str(&text).expect("just written");
         assert_eq!(Input::from(&line), input);
-        assert!(text.starts_with("[8,41,0.30000000000000004,["), "{text}");
+        assert!(text.starts_with("[8,105,0.30000000000000004,["), "{text}");
         let changed = Input {
             trigger_change: Some(TriggerChange {
                 age_s: 0.1 / 3.0,

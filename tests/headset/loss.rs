@@ -4,6 +4,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use game::Model;
+use glam::DVec3;
 
 use crate::client::Client;
 use crate::machine::runtime;
@@ -147,6 +148,84 @@ fn a_lost_focus_pauses_the_game() {
     room.wait_until("the focus", |room| {
         room.input.hand.is_some() && room.input.steps > 0
     });
+    played.end();
+}
+
+/// The runtime gives the hands to one program and to another, both of which go on: whoever has none stands still.
+#[test]
+fn focus_that_goes_and_comes_pauses_and_goes_on() {
+    let Some(mut played) = play() else { return };
+    let id = played
+        .service
+        .client_id("bowling")
+        .expect("it is connected");
+    let elsewhere = tempfile::tempdir().expect("a temporary folder");
+    let mut other = start(&played.service, &elsewhere.path().join("session"));
+    other.wait_for("Recording into", PATIENCE);
+    let room = &mut played.room;
+    room.wait_until("the loss of focus", |room| room.input.hand.is_none());
+    let steps = room.game.steps();
+    played.service.ctl(&["-p", &id.to_string()]);
+    room.wait_until("the focus again", |room| {
+        room.input.hand.is_some() && room.input.steps > 0
+    });
+    assert!(room.game.steps() < steps + 720, "no time is made up for");
+    let (status, said) = other.finish();
+    assert!(status.success(), "{said}");
+    played.end();
+}
+
+/// The runtime cuts off what the hands do: the ball in the hand falls, and when they are back it can be taken again.
+#[test]
+fn hands_that_are_cut_off_are_lost_and_come_back() {
+    let Some(mut played) = play() else { return };
+    let id = played
+        .service
+        .client_id("bowling")
+        .expect("it is connected");
+    let id = id.to_string();
+    let room = &mut played.room;
+    room.take_ball(Hand::Right);
+    played.service.ctl(&["-i", &id]);
+    room.wait_until("the fall", |room| room.count("dropped") == 1);
+    assert!(room.input.hand.is_none() && room.count("released") == 0);
+    room.hand(Hand::Right).trigger = 0.0;
+    room.send();
+    played.service.ctl(&["-i", &id]);
+    room.wait_until("the hand again", |room| room.input.hand.is_some());
+    room.take_ball(Hand::Right);
+    played.end();
+}
+
+/// The participant recentres with a ball in the hand: head and hand are elsewhere at once, and nothing else happens.
+#[test]
+fn recentring_neither_throws_nor_strikes_nor_walks() {
+    let Some(mut played) = play() else { return };
+    let room = &mut played.room;
+    room.take_ball(Hand::Right);
+    // Half a metre to the side, so that the middle of the new space is not that of the old one.
+    let aside = DVec3::new(0.3, 0.0, 0.4);
+    room.packet.head.position += aside;
+    let world = room.game.hand_pose_world().expect("it is tracked").position;
+    room.reach(Hand::Right, world + aside);
+    let hand = room.input.hand.expect("it is tracked").pose.position;
+    let rig = room.game.world_from_tracking();
+    let events = ["impact", "touched", "released", "dropped", "tracking"];
+    let before = events.map(|kind| room.count(kind));
+    played.service.ctl(&["-c"]);
+    room.wait_until("the new space", |room| room.recentred == 1);
+    assert_eq!(room.device("recentred").len(), 1);
+    let moved = room.input.hand.expect("it is tracked").pose.position - hand;
+    assert!(
+        moved.distance(-aside) < 0.01,
+        "the hand is elsewhere: {moved}"
+    );
+    let steps = room.game.steps();
+    room.wait_until("some time", |room| room.game.steps() > steps + 360);
+    assert_eq!(room.game.held(), Some(Model::Ball(0)));
+    assert_eq!(events.map(|kind| room.count(kind)), before, "{events:?}");
+    assert_eq!(room.game.world_from_tracking(), rig);
+    assert_eq!(room.recentred, 1, "told once");
     played.end();
 }
 

@@ -5,9 +5,9 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
 
-use game::Phase;
+use game::{Button, Phase};
 use glam::DVec3;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::ask_until;
 use crate::client::Client;
@@ -56,6 +56,50 @@ fn agrees(room: &Room, truth: Released) {
     );
 }
 
+/// The journal has the hand's raw poses around the throw: who fits a velocity to them gets the swing's.
+fn has_its_poses(room: &mut Room, truth: Released, throws: usize) {
+    room.wait_until("the poses behind the throw", |room| {
+        room.device("after_throw").len() == throws
+    });
+    let released = room.event("released").expect("just seen")["step"].clone();
+    let [thrown, after] = ["throw", "after_throw"].map(|key| {
+        let lines = room.device(key);
+        assert_eq!(lines.len(), throws, "{key}");
+        let line = lines[throws - 1].clone();
+        assert_eq!(line["step"], released, "{key}");
+        line
+    });
+    let time = |value: &Value| value["xr_time_ns"].as_i64().expect("a time");
+    let times = |line: &Value| -> Vec<i64> {
+        let readings = line["readings"].as_array().expect("a list");
+        readings.iter().map(time).collect()
+    };
+    let before = thrown["readings"].as_array().expect("a list");
+    let let_go = &before[before.len() - 1]["right"];
+    // Every frame of that time, however many a busy machine has made.
+    let (at, opened) = (time(&thrown), time(&let_go["changes"][0]));
+    let frames = |from: i64, to: i64| -> Vec<i64> {
+        let all = room.device("frame").into_iter().map(time);
+        all.filter(|at| (from..=to).contains(at)).collect()
+    };
+    assert_eq!(times(&thrown), frames(opened - 200_000_000, at));
+    assert_eq!(times(&after), frames(at + 1, at + 100_000_000));
+    assert!(before.len() >= 2, "{thrown}");
+    let held = &before[before.len() - 2]["right"];
+    assert_eq!(
+        (&held["trigger"], &let_go["trigger"]),
+        (&json!(1.0), &json!(0.0))
+    );
+    // The driver's velocity at the release is the hand's, a little slower than the ball's farther out on the arm.
+    let linear = vector(&let_go["grip"]["linear"]);
+    let ratio = linear.length() / truth.velocity.length();
+    assert!((0.6..1.0).contains(&ratio), "{ratio}: {let_go}");
+    assert!(
+        before[0]["left"]["grip"]["position"].is_array(),
+        "both hands"
+    );
+}
+
 /// A game of one frame: chosen by the buttons of the other hand, played to its score.
 #[test]
 fn a_whole_frame_is_played() {
@@ -90,12 +134,27 @@ fn a_whole_frame_is_played() {
         let truth = swing.throw(&mut room, Hand::Right);
         throws += 1;
         agrees(&room, truth);
+        has_its_poses(&mut room, truth, throws);
         room.wait_until("the pins counted", |room| room.count("settled") == throws);
         room.wait_until("the pinsetter", |room| {
             room.game.phase() == Phase::Ready || room.count("game_over") == 1
         });
         room.walk_to(Hand::Right, 0.6, 2.3);
     }
+    room.wait_until("the game's frame times", |room| {
+        !room.device("game_frames").is_empty()
+    });
+    let of_game = room.device("game_frames")[0].clone();
+    let number = |key: &str| of_game[key].as_f64().expect("a number");
+    let lines = room.device("frame").len() as f64;
+    assert!((100.0..lines).contains(&number("count")), "{of_game}");
+    assert!(of_game["missed"].is_u64(), "{of_game}");
+    assert!(
+        number("prediction_median_ms") > 0.0
+            && number("prediction_longest_ms") >= number("prediction_median_ms")
+            && number("taken_p99_ms") >= number("taken_median_ms"),
+        "{of_game}"
+    );
     let total = room.event("frame_scored").expect("just seen")["total"].clone();
     let (status, said) = client.finish();
     assert!(status.success(), "{said}");
@@ -104,6 +163,40 @@ fn a_whole_frame_is_played() {
         sheet.contains(&total.to_string()),
         "{total} is not in {sheet}"
     );
+}
+
+/// Both buttons on the desk, pushed down by the hand that the runtime tells of.
+#[test]
+fn red_and_blue_are_pushed_down_in_the_room() {
+    let Some(runtime) = runtime() else { return };
+    let service = Service::start(&runtime, Compositor::Null);
+    let out = tempfile::tempdir().expect("a temporary folder");
+    let folder = out.path().join("session");
+    let mut client = start(&service, &folder);
+    let mut room = Room::enter(&service, &mut client, &folder);
+    room.walk_to(Hand::Right, -1.1, 2.55);
+    let buttons = room.game.observe().buttons;
+    let press = |room: &mut Room, button: Button| {
+        let seen = buttons.iter().find(|seen| seen.button == button);
+        let top = seen.expect("both are there").top;
+        let before = room.count("pressed");
+        for height in [0.25, 0.02, 0.25] {
+            room.reach(Hand::Right, top + DVec3::Y * height);
+        }
+        room.wait_until("the press", |room| room.count("pressed") > before);
+        assert_eq!(room.count("pressed"), before + 1, "pressed once");
+    };
+    press(&mut room, Button::Red);
+    let started = room.event("game_started").expect("a press starts a game");
+    assert_eq!(started["button"], "red");
+    press(&mut room, Button::Blue);
+    assert_eq!(room.count("confirm_asked"), 1);
+    assert_eq!(room.count("game_started"), 1, "a game is played");
+    press(&mut room, Button::Blue);
+    let started = room.event("game_started").expect("just seen");
+    assert_eq!(started["button"], "blue");
+    let (status, said) = client.finish();
+    assert!(status.success(), "{said}");
 }
 
 /// The experimenter's window shows the participant's room, and its keys press Red and Blue.

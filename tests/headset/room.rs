@@ -39,6 +39,8 @@ pub struct Room {
     pub said: Vec<Value>,
     /// The last input that the game consumed.
     pub input: Input,
+    /// How often the game was told that tracking space is a new one.
+    pub recentred: usize,
     /// How long before its frame's instant the trigger last changed, at the last release [s].
     pub released_age: Option<f64>,
 }
@@ -63,6 +65,7 @@ impl Room {
             packet,
             said: Vec::new(),
             input: Input::default(),
+            recentred: 0,
             released_age: None,
         };
         room.send();
@@ -80,6 +83,12 @@ impl Room {
     /// Whether the device's lines of the journal have said so.
     pub fn has_said(&self, key: &str, value: &str) -> bool {
         self.said.iter().any(|line| line["device"][key] == value)
+    }
+
+    /// What the device's lines of the journal say under a key, as they came.
+    pub fn device(&self, key: &str) -> Vec<&Value> {
+        let lines = self.said.iter().map(|line| &line["device"][key]);
+        lines.filter(|value| !value.is_null()).collect()
     }
 
     /// The last event of a kind.
@@ -114,6 +123,7 @@ impl Room {
             }
             let input: InputLine = serde_json::from_value(line["input"].clone()).expect("an input");
             self.input = Input::from(&input);
+            self.recentred += usize::from(self.input.recentred);
             self.game.step(&self.input);
         }
     }

@@ -263,6 +263,7 @@ impl Desk {
             press_red,
             press_blue,
             locked: [false; 2],
+            recentred: false,
             steps: self.steps,
             trigger_change: None,
         }

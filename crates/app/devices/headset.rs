@@ -24,6 +24,8 @@ pub struct Participant {
     played_ns: Option<i64>,
     /// Steps by which the alley is ahead of the display, because steps are whole, from 0 to 1.
     ahead: f64,
+    /// Time of display from which on tracking space is a new one [ns], while no frame has been played in it.
+    recentre_ns: Option<i64>,
 }
 
 impl Participant {
@@ -36,12 +38,18 @@ impl Participant {
             ignored: [false; 2],
             played_ns: None,
             ahead: 0.0,
+            recentre_ns: None,
         }
     }
 
     /// The hand that throws.
     pub fn throwing(&self) -> Side {
         self.throwing
+    }
+
+    /// Hears that tracking space is laid anew for what is seen at `display_ns` or later.
+    pub fn recentre(&mut self, display_ns: i64) {
+        self.recentre_ns = Some(display_ns);
     }
 
     /// The share of the last step at which the frame is seen, from 0 to 1.
@@ -66,6 +74,7 @@ impl Participant {
         period_s: f64,
         is_holding: bool,
     ) -> Input {
+        let recentred = self.recentre_ns.take_if(|at| *at <= display_ns).is_some();
         let hands = &readings.hands;
         let other = self.throwing.other();
         let is_free = !is_holding && closure(&hands[self.throwing as usize]) < TAKES_OVER;
@@ -75,6 +84,7 @@ impl Participant {
             // One frame without a hand: it has not moved from one side to the other, and the old one's grip is over.
             return Input {
                 head: readings.head.map(tracked),
+                recentred,
                 steps: self.due(display_ns, period_s),
                 ..Input::default()
             };
@@ -98,8 +108,12 @@ impl Participant {
             press_red: chooses && choosing.red,
             press_blue: chooses && choosing.blue,
             locked: [false; 2],
+            recentred,
             steps: self.due(display_ns, period_s),
-            trigger_change: change.and_then(|change| aged(change, display_ns)),
+            // Where the hand was before is told in a space that is no more.
+            trigger_change: change
+                .filter(|_| !recentred)
+                .and_then(|change| aged(change, display_ns)),
         }
     }
 
@@ -242,6 +256,42 @@ mod tests {
         let ten_seconds = 10_000_000_000;
         let input = participant.input(&readings(0.0, 0.0), ten_seconds, 1.0 / 90.0, false);
         assert_eq!(input.steps, 8, "what passed meanwhile is not made up for");
+    }
+
+    /// The runtime tells of a new space ahead of its first frame; the game must hear of it in that frame, and once.
+    #[test]
+    fn a_new_space_is_told_with_the_first_frame_in_it() {
+        let mut participant = Participant::new(720.0);
+        let mut with_change = readings(0.0, 0.0);
+        with_change.hands[1].changes[0] = Some(Change {
+            time_ns: 1_000_000_000,
+            grip: grip(0.1),
+        });
+        participant.recentre(1_020_000_000);
+        let mut told = |milliseconds: i64| {
+            let input = participant.input(&with_change, milliseconds * 1_000_000, 0.01, true);
+            (input.recentred, input.trigger_change.is_some())
+        };
+        assert_eq!(told(1_010), (false, true));
+        assert_eq!(
+            told(1_020),
+            (true, false),
+            "the old pose is of the old space"
+        );
+        assert_eq!(told(1_030), (false, true));
+    }
+
+    /// Nothing is played in a pause: the first frame behind it hears of what happened meanwhile.
+    #[test]
+    fn a_new_space_in_a_pause_is_told_behind_it() {
+        let mut participant = Participant::new(720.0);
+        participant.recentre(5);
+        assert!(!participant.pause(&readings(0.0, 0.0)).recentred);
+        assert!(
+            participant
+                .input(&readings(0.0, 0.0), 10, 0.01, false)
+                .recentred
+        );
     }
 
     #[test]

@@ -334,6 +334,7 @@ impl Device for Script {
             press_red: false,
             press_blue: false,
             locked: [false; 2],
+            recentred: false,
             steps: self.steps,
             trigger_change: None,
         }

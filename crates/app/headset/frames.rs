@@ -5,13 +5,22 @@ use std::time::Duration;
 use renderer::headset::Frame;
 use serde_json::{Value, json};
 
-/// Frames so far.
+/// Frames so far, of the session and of the game that is played.
 #[derive(Debug, Default)]
 pub struct FrameTimes {
     last_display_ns: Option<i64>,
+    session: Totals,
+    game: Totals,
+}
+
+/// What is kept of a stretch of frames.
+#[derive(Debug, Default)]
+struct Totals {
     missed: u64,
     /// Time from waking to the end of the frame [ms].
     taken_ms: Vec<f32>,
+    /// How far ahead of its waking a frame was predicted [ms].
+    predicted_ms: Vec<f32>,
 }
 
 /// A frame between its simulation and its end.
@@ -33,7 +42,6 @@ impl FrameTimes {
             missed_between(display_ns - last, frame.period_s())
         });
         self.last_display_ns = Some(display_ns);
-        self.missed += missed;
         Timing {
             display_ns,
             period_s: frame.period_s(),
@@ -49,10 +57,12 @@ impl FrameTimes {
         self.last_display_ns = None;
     }
 
-    /// The frame's line for the journal.
-    pub fn finish(&mut self, timing: Timing) -> Value {
+    /// The frame's line for the journal; `is_shown` when both eyes were located, drawn and handed over.
+    pub fn finish(&mut self, timing: Timing, is_shown: bool) -> Value {
         let taken = timing.woken.elapsed().as_secs_f64() * 1e3;
-        self.taken_ms.push(taken as f32);
+        for totals in [&mut self.session, &mut self.game] {
+            totals.add(&timing, taken);
+        }
         let rounded = |milliseconds: f64| (milliseconds * 1e3).round() / 1e3;
         json!({ "frame": {
             "xr_time_ns": timing.display_ns,
@@ -61,20 +71,49 @@ impl FrameTimes {
             "simulated_ms": rounded(timing.simulated.as_secs_f64() * 1e3),
             "taken_ms": rounded(taken),
             "missed": timing.missed,
+            "shown": is_shown,
         }})
     }
 
-    /// Frames, missed ones, and the median and the 99th percentile of the time that they took.
+    /// A game begins: what was before is not its.
+    pub fn begin_game(&mut self) {
+        self.game = Totals::default();
+    }
+
+    /// The session's frames, missed ones, and how long they took and were predicted ahead: medians and tails.
     pub fn summary(&self) -> Value {
-        let mut taken = self.taken_ms.clone();
-        taken.sort_by(f32::total_cmp);
-        let at = |share: f64| taken.get((share * (taken.len().max(1) - 1) as f64) as usize);
-        json!({ "frames": {
-            "count": taken.len(),
+        json!({ "frames": self.session.summary() })
+    }
+
+    /// The same of the frames since the game began.
+    pub fn game_summary(&self) -> Value {
+        json!({ "game_frames": self.game.summary() })
+    }
+}
+
+impl Totals {
+    fn add(&mut self, timing: &Timing, taken_ms: f64) {
+        self.missed += timing.missed;
+        self.taken_ms.push(taken_ms as f32);
+        let predicted = timing.prediction_s.map(|seconds| (seconds * 1e3) as f32);
+        self.predicted_ms.extend(predicted);
+    }
+
+    fn summary(&self) -> Value {
+        let at = |times: &[f32], share: f64| {
+            let mut sorted = times.to_vec();
+            sorted.sort_by(f32::total_cmp);
+            let last = sorted.len().checked_sub(1)?;
+            Some(sorted[(share * last as f64) as usize])
+        };
+        json!({
+            "count": self.taken_ms.len(),
             "missed": self.missed,
-            "taken_median_ms": at(0.5),
-            "taken_p99_ms": at(0.99),
-        }})
+            "taken_median_ms": at(&self.taken_ms, 0.5),
+            "taken_p99_ms": at(&self.taken_ms, 0.99),
+            "prediction_median_ms": at(&self.predicted_ms, 0.5),
+            "prediction_longest_ms": at(&self.predicted_ms, 1.0),
+        })
     }
 }
 
@@ -98,5 +137,33 @@ mod tests {
         assert_eq!(missed_between(33_333_333, period_s), 2);
         assert_eq!(missed_between(0, period_s), 0);
         assert_eq!(missed_between(5, 0.0), 0);
+    }
+
+    #[test]
+    fn a_game_counts_its_own_frames_and_the_session_all() {
+        let mut times = FrameTimes::default();
+        let timing = |missed, prediction_s| Timing {
+            display_ns: 0,
+            period_s: 0.01,
+            prediction_s,
+            missed,
+            woken: std::time::Instant::now(),
+            simulated: Duration::ZERO,
+        };
+        times.finish(timing(3, Some(0.5)), true);
+        times.begin_game();
+        for ahead in [0.01, 0.03, 0.02] {
+            times.finish(timing(1, Some(ahead)), true);
+        }
+        times.finish(timing(0, None), false);
+        let game = times.game_summary()["game_frames"].clone();
+        assert_eq!((&game["count"], &game["missed"]), (&json!(4), &json!(3)));
+        assert_eq!(game["prediction_median_ms"], json!(20.0_f32));
+        assert_eq!(game["prediction_longest_ms"], json!(30.0_f32));
+        let all = times.summary()["frames"].clone();
+        assert_eq!((&all["count"], &all["missed"]), (&json!(5), &json!(6)));
+        assert_eq!(all["prediction_longest_ms"], json!(500.0_f32));
+        let none = FrameTimes::default().game_summary()["game_frames"].clone();
+        assert!(none["taken_p99_ms"].is_null() && none["count"] == 0);
     }
 }

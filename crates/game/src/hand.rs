@@ -67,8 +67,10 @@ impl Game {
         self.hand.velocity = hand
             .and_then(|tracked| tracked.velocity)
             .map(|velocity| self.in_world(velocity));
-        self.hand.before = before
-            .filter(|before| now.is_some_and(|now| !self.has_jumped(*before, now, input.steps)));
+        let follows = |before: &Pose| {
+            now.is_some_and(|now| !self.has_jumped(*before, now, input.steps)) && !input.recentred
+        };
+        self.hand.before = before.filter(follows);
         if self.hand.before.is_none() {
             self.hand.history.clear();
         }

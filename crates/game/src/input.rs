@@ -100,6 +100,10 @@ pub struct Input {
     /// Whether presses of Red and of Blue, in the room or by key, are refused in this frame.
     #[serde(default)]
     pub locked: [bool; 2],
+    /// Whether tracking space has been laid anew since the frame before: head and hand are elsewhere in it without having
+    /// moved.
+    #[serde(default)]
+    pub recentred: bool,
     /// Physics steps that this frame advances.
     pub steps: u32,
     /// When the trigger last changed, if it did since the frame before and the device measured when.

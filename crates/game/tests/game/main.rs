@@ -4,6 +4,8 @@
 /// Whole throws.
 mod let_go;
 mod play;
+/// Tracking space is laid anew.
+mod recentre;
 /// The same inputs give the same bits.
 mod reproduce;
 /// Buttons, walking, touching, dropping.

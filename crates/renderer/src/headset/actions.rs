@@ -139,27 +139,22 @@ impl Actions {
             {
                 continue;
             }
-            if let Err(answer) = actions.suggest(instance, profile, &grip) {
-                notes.push(Note::BindingsRejected {
-                    profile: profile.name,
-                    answer: format!("{answer:?}"),
-                });
-            }
+            notes.extend(actions.suggest(instance, profile, &grip)?);
         }
         session.attach_action_sets(&[&actions.play, &actions.choose])?;
         Ok(actions)
     }
 
+    /// Suggests what a profile binds; names what the runtime rejects of it, and leaves the rest in force.
     fn suggest(
         &self,
         instance: &xr::Instance,
         profile: &Profile,
         grip: &xr::Action<xr::Posef>,
-    ) -> xr::Result<()> {
-        let mut bindings = Vec::new();
-        for (asked, path) in profile.bindings() {
-            let path = instance.string_to_path(&path)?;
-            bindings.push(match asked {
+    ) -> xr::Result<Option<Note>> {
+        let bind = |asked: Asked, path: &str| -> xr::Result<xr::Binding<'_>> {
+            let path = instance.string_to_path(path)?;
+            Ok(match asked {
                 Asked::GripPose => xr::Binding::new(grip, path),
                 Asked::Trigger => xr::Binding::new(&self.trigger, path),
                 Asked::Squeeze => xr::Binding::new(&self.squeeze, path),
@@ -171,10 +166,22 @@ impl Actions {
                 Asked::Red => xr::Binding::new(&self.red, path),
                 Asked::Blue => xr::Binding::new(&self.blue, path),
                 Asked::Haptic => xr::Binding::new(&self.haptic, path),
-            });
-        }
+            })
+        };
         let path = instance.string_to_path(profile.path)?;
-        instance.suggest_interaction_profile_bindings(path, &bindings)
+        let asked: Vec<(Asked, String)> = profile.bindings().collect();
+        let rejected = sift(&asked, |some| {
+            let bindings: xr::Result<Vec<_>> = some
+                .iter()
+                .map(|(asked, path)| bind(*asked, path))
+                .collect();
+            instance.suggest_interaction_profile_bindings(path, &bindings?)
+        });
+        Ok(rejected.map(|(answer, refused)| Note::BindingsRejected {
+            profile: profile.name,
+            paths: refused.into_iter().map(|(_, path)| path).collect(),
+            answer: format!("{answer:?}"),
+        }))
     }
 
     /// Brings the actions up to date, once a frame. With `locked` the Red and Blue buttons rest.
@@ -261,5 +268,52 @@ impl Actions {
             return Ok(None);
         }
         Ok(Some(session.instance().path_to_string(path)?))
+    }
+}
+
+/// Suggests all of `items`, or, where the runtime rejects them together, all that it accepts one by one: its first answer and
+/// what it rejects. A later suggestion takes the place of an earlier one.
+fn sift<T: Clone>(
+    items: &[T],
+    mut suggest: impl FnMut(&[T]) -> xr::Result<()>,
+) -> Option<(xr::sys::Result, Vec<T>)> {
+    let answer = suggest(items).err()?;
+    let (good, bad): (Vec<T>, Vec<T>) = items
+        .iter()
+        .cloned()
+        .partition(|item| suggest(std::slice::from_ref(item)).is_ok());
+    // What was suggested last alone is all that is in force.
+    if !good.is_empty() && suggest(&good).is_err() {
+        return Some((answer, items.to_vec()));
+    }
+    Some((answer, bad))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A runtime that knows all numbers but some: what it was told last and has taken, and what it says of `items`.
+    fn sifted(items: &[u32], unknown: &[u32]) -> (Vec<u32>, Option<Vec<u32>>) {
+        let mut in_force = Vec::new();
+        let rejected = sift(items, |some| {
+            if some.iter().any(|item| unknown.contains(item)) {
+                return Err(xr::sys::Result::ERROR_PATH_UNSUPPORTED);
+            }
+            in_force = some.to_vec();
+            Ok(())
+        });
+        let rejected = rejected.map(|(answer, items)| {
+            assert_eq!(answer, xr::sys::Result::ERROR_PATH_UNSUPPORTED);
+            items
+        });
+        (in_force, rejected)
+    }
+
+    #[test]
+    fn sift_leaves_in_force_what_the_runtime_accepts_and_names_the_rest() {
+        assert_eq!(sifted(&[1, 2, 3], &[]), (vec![1, 2, 3], None));
+        assert_eq!(sifted(&[1, 2, 3], &[2]), (vec![1, 3], Some(vec![2])));
+        assert_eq!(sifted(&[1, 2], &[1, 2]), (vec![], Some(vec![1, 2])));
     }
 }

@@ -8,6 +8,7 @@
 //! runtime offers it.
 
 mod actions;
+mod begin;
 mod error;
 mod eyes;
 mod frame;

@@ -31,15 +31,18 @@ pub enum Note {
         /// The profile's path.
         profile: Option<String>,
     },
-    /// The runtime refused a profile's bindings.
+    /// The runtime refused some of a profile's bindings; the others are in force.
     BindingsRejected {
         /// The profile, as people call it.
         profile: &'static str,
+        /// The paths of the inputs and outputs that it refused; all of them where it does not know the profile.
+        paths: Vec<String>,
         /// The runtime's answer.
         answer: String,
     },
-    /// The floor was measured anew, or the participant recentred.
-    Recentred,
+    /// The floor was measured anew, or the participant recentred: what is seen at this time or later is located in a new
+    /// space [ns, the runtime's clock].
+    Recentred(i64),
     /// The headset was put on or taken off.
     Worn(bool),
     /// The display's rate [Hz].

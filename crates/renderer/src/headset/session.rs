@@ -7,6 +7,7 @@ use image::RgbaImage;
 use openxr as xr;
 
 use super::actions::{Actions, Readings, Side};
+use super::begin::{choose_rate, create, floor};
 use super::eyes::Eye;
 use super::frame::Frame;
 use super::note::{Focus, Note};
@@ -28,6 +29,8 @@ pub struct HeadsetSettings {
 pub struct HeadsetSession {
     eyes: [Eye; 2],
     actions: Actions,
+    /// Which of the runtime's spaces `base` is.
+    floor: xr::ReferenceSpaceType,
     base: xr::Space,
     head: xr::Space,
     stream: xr::FrameStream<xr::Vulkan>,
@@ -54,8 +57,8 @@ impl HeadsetSession {
         let (session, waiter, stream) = create(&runtime, &binding)?;
         let mut notes = Vec::new();
         let actions = Actions::attach(&runtime, &session, &mut notes)?;
-        let base =
-            session.create_reference_space(floor(&runtime, &session)?, xr::Posef::IDENTITY)?;
+        let floor = floor(&runtime, &session)?;
+        let base = session.create_reference_space(floor, xr::Posef::IDENTITY)?;
         let head =
             session.create_reference_space(xr::ReferenceSpaceType::VIEW, xr::Posef::IDENTITY)?;
         let blends = runtime
@@ -76,6 +79,7 @@ impl HeadsetSession {
         Ok(Self {
             eyes,
             actions,
+            floor,
             base,
             head,
             stream,
@@ -161,7 +165,12 @@ impl HeadsetSession {
                         self.notes.push(Note::Profile { side, profile });
                     }
                 }
-                Event::ReferenceSpaceChangePending(_) => self.notes.push(Note::Recentred),
+                Event::ReferenceSpaceChangePending(change)
+                    if change.reference_space_type() == self.floor =>
+                {
+                    let at = change.change_time().as_nanos();
+                    self.notes.push(Note::Recentred(at));
+                }
                 Event::UserPresenceChangedEXT(change) => {
                     self.notes.push(Note::Worn(change.is_user_present()));
                 }
@@ -326,64 +335,6 @@ impl Drop for HeadsetSession {
         // Images go back to the runtime, which must find no work on them; a lost device has none.
         let _ = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
     }
-}
-
-#[expect(unsafe_code, reason = "the session is bound to handles of Vulkan")]
-fn create(
-    runtime: &Runtime,
-    binding: &xr::vulkan::SessionCreateInfo,
-) -> Result<
-    (
-        xr::Session<xr::Vulkan>,
-        xr::FrameWaiter,
-        xr::FrameStream<xr::Vulkan>,
-    ),
-    HeadsetError,
-> {
-    // SAFETY: the handles are those that this runtime made for this system, and [`HeadsetSession`] drops the session first.
-    Ok(unsafe {
-        runtime
-            .instance
-            .create_session::<xr::Vulkan>(runtime.system, binding)
-    }?)
-}
-
-/// The space whose origin is on the floor: the recentred one where there is one.
-fn floor(
-    runtime: &Runtime,
-    session: &xr::Session<xr::Vulkan>,
-) -> Result<xr::ReferenceSpaceType, HeadsetError> {
-    let offered = session.enumerate_reference_spaces()?;
-    let local_floor = xr::ReferenceSpaceType::LOCAL_FLOOR_EXT;
-    if runtime.enabled.ext_local_floor && offered.contains(&local_floor) {
-        Ok(local_floor)
-    } else if offered.contains(&xr::ReferenceSpaceType::STAGE) {
-        Ok(xr::ReferenceSpaceType::STAGE)
-    } else {
-        Err(HeadsetError::Lacks {
-            runtime: runtime.headset.runtime.clone(),
-            what: "a space with its origin on the floor",
-        })
-    }
-}
-
-/// Asks for a rate: the wanted one, or the highest. Returns the rate that the display has.
-fn choose_rate(
-    session: &xr::Session<xr::Vulkan>,
-    wanted: Option<f32>,
-) -> Result<f32, HeadsetError> {
-    let offered = session.enumerate_display_refresh_rates()?;
-    let rate = match wanted {
-        Some(wanted) => match offered.iter().find(|rate| (*rate - wanted).abs() < 0.5) {
-            Some(rate) => *rate,
-            None => return Err(HeadsetError::no_such_rate(wanted, &offered)),
-        },
-        None => offered.iter().copied().fold(0.0, f32::max),
-    };
-    if rate > 0.0 {
-        session.request_display_refresh_rate(rate)?;
-    }
-    Ok(session.get_display_refresh_rate()?)
 }
 
 /// An eye in the world.

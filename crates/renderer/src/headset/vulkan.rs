@@ -13,7 +13,7 @@ use super::HeadsetError;
 use super::runtime::Runtime;
 use crate::Gpu;
 
-/// Version that is asked for: what wgpu itself asks for where a driver has it.
+/// Version that is asked for where the runtime wants none that is newer: what wgpu itself asks for.
 const VERSION: u32 = vk::API_VERSION_1_3;
 
 /// The device that draws for the headset, and the handles that the runtime's session is bound to.
@@ -31,7 +31,7 @@ fn refused(what: &str, error: impl std::fmt::Display) -> HeadsetError {
 pub(super) fn open(runtime: &Runtime) -> Result<Vulkan, HeadsetError> {
     let (xr_instance, system) = (&runtime.instance, runtime.system);
     // The specification asks for this call before any device is made.
-    xr_instance.graphics_requirements::<xr::Vulkan>(system)?;
+    let version = version(&xr_instance.graphics_requirements::<xr::Vulkan>(system)?);
     // SAFETY: the loader has the standard name; what it is asked for below are the calls of Vulkan 1.0.
     let entry =
         unsafe { ash::Entry::load() }.map_err(|error| refused("no Vulkan loader", error))?;
@@ -39,12 +39,12 @@ pub(super) fn open(runtime: &Runtime) -> Result<Vulkan, HeadsetError> {
     let get_address: xr::sys::platform::VkGetInstanceProcAddr =
         unsafe { std::mem::transmute(entry.static_fn().get_instance_proc_addr) };
     let flags = wgpu::InstanceFlags::empty();
-    let extensions = hal::vulkan::Instance::desired_extensions(&entry, VERSION, flags)
+    let extensions = hal::vulkan::Instance::desired_extensions(&entry, version, flags)
         .map_err(|error| refused("Vulkan's extensions", error))?;
     let names = pointers(&extensions);
     let application = vk::ApplicationInfo::default()
         .application_name(c"bowling")
-        .api_version(VERSION);
+        .api_version(version);
     let create = vk::InstanceCreateInfo::default()
         .application_info(&application)
         .enabled_extension_names(&names);
@@ -66,7 +66,7 @@ pub(super) fn open(runtime: &Runtime) -> Result<Vulkan, HeadsetError> {
         hal::vulkan::Instance::from_raw(
             entry.clone(),
             instance.clone(),
-            VERSION,
+            version,
             0,
             None,
             extensions,
@@ -140,6 +140,14 @@ pub(super) fn open(runtime: &Runtime) -> Result<Vulkan, HeadsetError> {
     })
 }
 
+/// The version to ask for. The newest that a runtime names is the newest that it was tried with: others may work, and what
+/// wgpu asks for does; below the oldest that it names nothing does.
+fn version(range: &xr::vulkan::Requirements) -> u32 {
+    let least = range.min_api_version_supported;
+    let least = vk::make_api_version(0, least.major().into(), least.minor().into(), 0);
+    VERSION.max(least)
+}
+
 #[expect(unsafe_code, reason = "wgpu takes over what was opened below it")]
 fn wrap(
     instance: hal::vulkan::Instance,
@@ -170,4 +178,23 @@ fn pointers(names: &[&'static CStr]) -> Vec<*const std::ffi::c_char> {
 
 fn pointer<T>(value: &T) -> *const c_void {
     std::ptr::from_ref(value).cast()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn version_is_never_below_what_the_runtime_needs() {
+        let asked = |least, most| {
+            version(&xr::vulkan::Requirements {
+                min_api_version_supported: least,
+                max_api_version_supported: most,
+            })
+        };
+        let of = |minor| xr::Version::new(1, minor, 0);
+        assert_eq!(asked(of(0), of(0)), vk::API_VERSION_1_3);
+        assert_eq!(asked(of(1), of(3)), vk::API_VERSION_1_3);
+        assert_eq!(asked(of(4), of(4)), vk::make_api_version(0, 1, 4, 0));
+    }
 }

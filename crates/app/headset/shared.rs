@@ -1,0 +1,66 @@
+//! What the runtime's thread and the main thread share.
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use anyhow::Result;
+use game::Button;
+use renderer::View;
+
+use crate::session::Session;
+
+/// What the two threads share.
+pub struct Shared {
+    /// `None` once the session is finished.
+    pub session: Mutex<Option<Session>>,
+    /// Milliseconds since `began` at which the runtime's thread last came round.
+    pub beat_ms: AtomicU64,
+    pub began: Instant,
+    /// What the left eye saw last, world frame.
+    pub left_eye: Mutex<Option<View>>,
+    /// The experimenter's keys for Red and Blue: pressed since the last frame.
+    pub keys: [AtomicBool; 2],
+    pub stop: Arc<AtomicBool>,
+}
+
+impl Shared {
+    pub fn beat(&self) {
+        let now = self.began.elapsed().as_millis() as u64;
+        self.beat_ms.store(now, Ordering::Relaxed);
+    }
+
+    /// How long the runtime's thread has been silent.
+    pub fn silence(&self) -> Duration {
+        let beat = Duration::from_millis(self.beat_ms.load(Ordering::Relaxed));
+        self.began.elapsed().saturating_sub(beat)
+    }
+
+    /// The experimenter presses a key; the next frame takes it.
+    pub fn press(&self, button: Button) {
+        self.keys[button as usize].store(true, Ordering::Relaxed);
+    }
+
+    pub fn take_press(&self, button: Button) -> bool {
+        self.keys[button as usize].swap(false, Ordering::Relaxed)
+    }
+
+    pub fn left_eye(&self) -> Option<View> {
+        *self.left_eye.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub fn must_stop(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
+    /// Does something with the session, unless it is finished.
+    pub fn with<T>(&self, act: impl FnOnce(&mut Session) -> Result<T>) -> Result<Option<T>> {
+        // A thread that panicked left the journal between two lines: it can still be closed.
+        let mut session = self.session.lock().unwrap_or_else(PoisonError::into_inner);
+        session.as_mut().map(act).transpose()
+    }
+
+    pub fn note(&self, value: serde_json::Value) -> Result<()> {
+        self.with(|session| session.device(value)).map(|_| ())
+    }
+}
