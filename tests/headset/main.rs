@@ -20,6 +20,8 @@ mod remote;
 mod room;
 /// The runtime's service, with a folder, a port and, if need be, a screen of its own.
 mod service;
+/// How long the first picture takes.
+mod start;
 
 use std::time::{Duration, Instant};
 
