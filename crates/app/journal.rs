@@ -107,9 +107,9 @@ pub fn hash_text(hash: u64) -> String {
 
 /// One input as an array: steps, buttons, trigger, head, hand, and the trigger's last change where it is known.
 ///
-/// Buttons are a sum: 1 walk forward, 2 walk back, 4 Red, 8 Blue, 16 Red locked, 32 Blue locked. Head and hand are `null` when not
-/// tracked, else position, rotation (x, y, z, w) and, when measured, linear and angular velocity. The change is its age in
-/// seconds and the hand then; it is left out where there is none.
+/// Buttons are a sum: 1 walk forward, 2 walk back, 4 Red, 8 Blue, 16 Red locked, 32 Blue locked, 64 a new tracking space.
+/// Head and hand are `null` when not tracked, else position, rotation (x, y, z, w) and, when measured, linear and angular
+/// velocity. The change is its age in seconds and the hand then; it is left out where there is none.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct InputLine(
     u32,
