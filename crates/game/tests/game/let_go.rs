@@ -1,6 +1,6 @@
 //! A device that says when the trigger opened: the ball leaves the hand then, and not at the end of the frame.
 
-use game::{Tracked, TriggerChange, Velocity};
+use game::{EventKind, Model, Tracked, TriggerChange, Velocity};
 use glam::{DQuat, DVec3};
 use physics::Pose;
 
@@ -70,7 +70,7 @@ fn a_picture_within_a_step_shows_a_pose_between() {
     player.frame();
     let ball = |share| {
         let seen = player.game.visible_at(share);
-        let ball = seen.iter().find(|seen| seen.model == game::Model::Ball(0));
+        let ball = seen.iter().find(|seen| seen.model == Model::Ball(0));
         ball.expect("it is seen").pose.position
     };
     assert_eq!(ball(1.0), player.game.observe().balls[0].position);
@@ -94,4 +94,41 @@ fn an_impossible_age_counts_as_none() {
     player.frame();
     assert_eq!(player.game.held(), None);
     assert!(player.game.observe().balls[0].position.distance(before) < 0.02);
+}
+
+/// A release that was long ago, close to the pins: the ball has flown on meanwhile, and not through the pin that stood there.
+#[test]
+fn a_ball_strikes_what_was_on_its_way_since_the_release() {
+    let mut player = Player::new(conditions(&[]), 1);
+    player.take_ball();
+    player.walk_to(0.0, -17.0);
+    let pin = player.game.observe().pins[0].position;
+    player.move_hand(pin + DVec3::new(0.0, 0.25, 0.5), 1.0);
+    assert!(
+        player.game.standing().contains(&1),
+        "nothing has struck it yet"
+    );
+    let now = player.hand.expect("it is tracked");
+    player.input.trigger = 0.0;
+    player.input.trigger_change = Some(TriggerChange {
+        age_s: 0.15,
+        hand: Tracked {
+            pose: player.game.world_from_tracking().inverse() * now,
+            velocity: Some(Velocity {
+                linear: DVec3::new(0.0, 0.0, -8.0),
+                angular: DVec3::ZERO,
+            }),
+        },
+    });
+    player.frame();
+    player.input.trigger_change = None;
+    player.frame();
+    let struck = player.count(|kind| match kind {
+        EventKind::Impact { a, b, .. } => {
+            [*a, *b].contains(&Model::Pin(1)) && [*a, *b].contains(&Model::Ball(0))
+        }
+        _ => false,
+    });
+    // A metre of free flight would have ended behind it.
+    assert_eq!(struck, 1);
 }
