@@ -40,6 +40,7 @@ use anyhow::Result;
 use clap::{CommandFactory, Parser};
 
 use args::{Arguments, Command};
+pub use shot::clock::thread_seconds;
 
 /// Exit code for arguments that cannot be used.
 const BAD_ARGUMENTS: u8 = 2;

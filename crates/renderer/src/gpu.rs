@@ -49,6 +49,10 @@ impl BackendChoice {
     }
 }
 
+/// What a device must have that tells how long it drew.
+pub(crate) const TIMESTAMPS: wgpu::Features =
+    wgpu::Features::TIMESTAMP_QUERY.union(wgpu::Features::TIMESTAMP_QUERY_INSIDE_ENCODERS);
+
 /// A graphics device with the names that a log needs to tell one driver from another.
 #[derive(Clone, Debug)]
 pub struct Gpu {
@@ -111,6 +115,8 @@ impl Gpu {
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("renderer"),
             required_limits: limits,
+            // For benchmarks; no picture needs them.
+            required_features: adapter.features() & TIMESTAMPS,
             ..Default::default()
         };
         let (device, queue) =

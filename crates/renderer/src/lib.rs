@@ -29,6 +29,7 @@
 pub mod headset;
 
 mod error;
+mod eye_targets;
 mod gpu;
 mod mesh;
 mod obj;
@@ -49,6 +50,7 @@ pub use glam;
 pub use image::RgbaImage;
 
 pub use error::RenderError;
+pub use eye_targets::EyeTargets;
 pub use gpu::{BackendChoice, Gpu};
 pub use mesh::{MeshData, Vertex};
 pub use relay::relay;
