@@ -130,23 +130,31 @@ impl Reverberation {
         &self.room
     }
 
-    /// Energy in one ear after a click of 1 at 1 m, with a gain of 1 and no early reflections.
+    /// Energy in one ear for each unit of energy of a click at 1 m, with a gain of 1 and no early reflections.
+    ///
+    /// The click takes a millisecond: a shorter one would weigh all frequencies alike, and most of those are high ones that
+    /// ring for less than the room's time.
     fn energy_of_a_click(&mut self, sample_rate: f64) -> f64 {
         let quanta = (self.room.reverberation_s * sample_rate) as usize / QUANTUM + 1;
-        let mut energy = 0.0;
-        let mut input = [0.0; QUANTUM];
-        input[0] = 1.0;
-        for _ in 0..quanta {
+        let length = sample_rate / 1000.0;
+        let (mut given, mut heard) = (0.0, 0.0);
+        for quantum in 0..quanta {
+            let input: [f32; QUANTUM] = std::array::from_fn(|i| {
+                let t = (quantum * QUANTUM + i) as f64;
+                let is_click = t < length;
+                let click = 1.0 - libm::cos(std::f64::consts::TAU * t / length);
+                if is_click { click as f32 } else { 0.0 }
+            });
             let mut out = [[0.0; 2]; QUANTUM];
             self.add(&input, &mut out);
-            energy += out
+            given += input.iter().map(|x| f64::from(x * x)).sum::<f64>();
+            heard += out
                 .iter()
                 .map(|[left, _]| f64::from(left * left))
                 .sum::<f64>();
-            input[0] = 0.0;
         }
         self.silence();
-        energy
+        heard / given
     }
 
     fn silence(&mut self) {
