@@ -9,6 +9,7 @@ pub(crate) mod coulomb;
 mod effects;
 mod layers;
 mod origins;
+mod scene;
 mod session;
 mod things;
 mod validate;
@@ -23,6 +24,7 @@ pub use alley::{
 pub use coulomb::{CoulombConfig, PairConfig};
 pub use effects::{EffectName, OilConfig};
 pub use layers::{ConfigError, Layer};
+pub use scene::{SceneConfig, SceneEffect, SoundConfig};
 pub use session::{
     DisplayConfig, DisplayProfile, DisplayProfileName, ParticipantConfig, PinsetterConfig,
     RulesConfig, TrackingConfig,
@@ -80,6 +82,10 @@ pub struct Config {
     pub display: DisplayConfig,
     /// The scripted participant.
     pub participant: ParticipantConfig,
+    /// What is shown and heard.
+    pub scene: SceneConfig,
+    /// How it sounds.
+    pub sound: SoundConfig,
 }
 
 /// How the world steps.

@@ -13,6 +13,7 @@ mod buttons;
 mod components;
 mod condition;
 mod config;
+mod contacts;
 mod contest;
 mod event;
 mod grab;
@@ -38,8 +39,10 @@ pub use config::{
     DisplayProfileName, EffectName, GutterConfig, HandConfig, KickbackConfig, LaneConfig, Layer,
     ObjectShape, ObjectsConfig, OilConfig, PairConfig, ParticipantConfig, PhysicsConfig, PinConfig,
     PinEllipsoidConfig, PinPartsConfig, PinsetterConfig, PitConfig, RackConfig, ReleaseConfig,
-    ReleaseFit, ResponseModel, RoomConfig, RulesConfig, StartConfig, TrackingConfig, WalkingConfig,
+    ReleaseFit, ResponseModel, RoomConfig, RulesConfig, SceneConfig, SceneEffect, SoundConfig,
+    StartConfig, TrackingConfig, WalkingConfig,
 };
+pub use contacts::{Contact, RollingBall};
 pub use event::{
     EndReason, Event, EventKind, Release, ReleaseSource, ReleaseVelocity, TrackedPart,
 };
@@ -98,7 +101,8 @@ pub struct Game {
     pending: Option<Pending>,
     pressed: Vec<Button>,
     keys: [bool; 2],
-    impacts: Vec<EventKind>,
+    impacts: Vec<Contact>,
+    contacts: Vec<Contact>,
     events: Vec<Event>,
 }
 
@@ -130,6 +134,8 @@ fn differing(condition: &Config, lobby: &Config) -> Option<&'static str> {
         ("tracking", condition.tracking != lobby.tracking),
         ("display", condition.display != lobby.display),
         ("participant", condition.participant != lobby.participant),
+        ("scene", condition.scene != lobby.scene),
+        ("sound", condition.sound != lobby.sound),
     ];
     once.into_iter()
         .find(|(_, differs)| *differs)
@@ -174,6 +180,7 @@ impl Game {
             pressed: Vec::new(),
             keys: [false; 2],
             impacts: Vec::new(),
+            contacts: Vec::new(),
             events: Vec::new(),
         })
     }

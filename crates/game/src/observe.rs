@@ -1,7 +1,5 @@
 //! What can be known of a game from outside: for the picture, the journal, and the scripted participant.
 
-use std::collections::BTreeMap;
-
 use glam::{DQuat, DVec3};
 use physics::Pose;
 
@@ -10,7 +8,7 @@ use crate::alley;
 use crate::components::{Ball, Journey, Painted, Physical, Pin, PinKeeper, PushButton, Shown};
 use crate::condition::{Button, Conditions};
 use crate::config::Config;
-use crate::event::{Event, EventKind};
+use crate::event::Event;
 use crate::score::{Delivery, ScoreSheet};
 use crate::throw::{Stage, count, is_down};
 use crate::visible::{Model, Visible};
@@ -295,47 +293,6 @@ impl Game {
     pub(crate) fn head_is_beyond(&self) -> bool {
         self.head_pose_world()
             .map_or(self.head_was_beyond, |head| head.position.z < 0.0)
-    }
-
-    /// Keeps the hardest impact of each pair in this frame, and what the hand struck.
-    pub(crate) fn notice_impacts(&mut self) {
-        self.head_was_beyond = self.head_is_beyond();
-        let hand = self.room.id(self.room.hand);
-        for impact in self.room.world.impacts() {
-            let a = self.room.model(self.room.owner(impact.a));
-            let b = self.room.model(self.room.owner(impact.b));
-            if impact.a == hand || impact.b == hand {
-                self.hand
-                    .touching
-                    .push(if impact.a == hand { b } else { a });
-            }
-            if impact.approach_speed < self.room.config.rules.impact_reported_from_mps {
-                continue;
-            }
-            self.impacts.push(EventKind::Impact {
-                a,
-                b,
-                point: impact.point,
-                approach_speed: impact.approach_speed,
-                impulse: impact.impulse.length(),
-            });
-        }
-    }
-
-    /// Reports the impacts of a frame, one for each pair.
-    pub(crate) fn report_impacts(&mut self) {
-        let mut hardest: BTreeMap<(Model, Model), (f64, EventKind)> = BTreeMap::new();
-        for kind in self.impacts.drain(..) {
-            if let EventKind::Impact { a, b, impulse, .. } = kind {
-                let pair = (a.min(b), a.max(b));
-                if hardest.get(&pair).is_none_or(|(known, _)| *known < impulse) {
-                    hardest.insert(pair, (impulse, kind));
-                }
-            }
-        }
-        for (_, kind) in hardest.into_values() {
-            self.record(kind);
-        }
     }
 
     /// The bodies of the alley, to look at: what tests of the physics and measurements need.

@@ -75,5 +75,6 @@ pub(super) fn validate(config: &Config) -> Result<(), Invalid> {
     session::rules(config)?;
     session::pinsetter(config)?;
     session::display(config)?;
-    session::participant(config)
+    session::participant(config)?;
+    session::sound(&config.sound)
 }

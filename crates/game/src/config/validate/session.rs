@@ -1,7 +1,7 @@
 //! Which steps, rules, machines, displays and scripted participants are possible.
 
 use super::{Invalid, limited, ranges, relation};
-use crate::config::{Config, CoulombConfig, DisplayProfile};
+use crate::config::{Config, CoulombConfig, DisplayProfile, SoundConfig};
 
 /// How the world steps, of what it is made, and how often it is looked at.
 pub(super) fn physics(config: &Config) -> Result<(), Invalid> {
@@ -49,6 +49,21 @@ pub(super) fn physics(config: &Config) -> Result<(), Invalid> {
         &["physics.step_hz"],
         (steps - steps.round()).abs() < 1e-9 && steps >= 1.0,
         "must divide physics.step_hz, so that a frame is a whole number of steps",
+    )
+}
+
+/// Halls that ring, and levels that a card can play.
+pub(super) fn sound(sound: &SoundConfig) -> Result<(), Invalid> {
+    ranges(
+        "sound",
+        &[
+            ("full_scale_pa", sound.full_scale_pa, 0.01, 1000.0),
+            ("hall_width_m", sound.hall_width_m, 2.0, 200.0),
+            ("hall_height_m", sound.hall_height_m, 2.0, 30.0),
+            ("hall_length_m", sound.hall_length_m, 5.0, 200.0),
+            ("reverberation_s", sound.reverberation_s, 0.1, 5.0),
+            ("lookahead_s", sound.lookahead_s, 0.0, 0.5),
+        ],
     )
 }
 
