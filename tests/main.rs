@@ -24,6 +24,8 @@ mod recording;
 mod release;
 /// Throws without hands, one and many.
 mod shot;
+/// What a throw sounds like.
+mod sound;
 /// Maps of strikes, and what cannot be mapped.
 mod strike_map;
 /// Studies from plan to tables, killed, damaged, erased.

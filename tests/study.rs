@@ -196,6 +196,10 @@ fn any_moment_of_a_session_can_be_drawn_and_any_span_filmed() {
         u32::from_le_bytes([bytes[48], bytes[49], bytes[50], bytes[51]]),
         7
     );
+    // And with each goes the sound of a thirtieth second.
+    let sound = [&b"01wb"[..], &6400u32.to_le_bytes()].concat();
+    let tracks = bytes.windows(8).filter(|word| **word == sound);
+    assert_eq!(tracks.count(), 7);
     let output = bowling(&["capture", &session, "--at", "99999", "--out", "x.png"]);
     assert_eq!(output.status.code(), Some(2));
     let refused = String::from_utf8_lossy(&output.stderr).into_owned();

@@ -6,6 +6,7 @@ use anyhow::{Context, Result, bail};
 use game::{Config, DisplayProfileName, Game, Visible};
 use image::{DynamicImage, RgbaImage};
 use renderer::View;
+use sound::Listener;
 
 use crate::args::{CaptureArguments, ViewChoice, unusable};
 use crate::convert;
@@ -16,6 +17,7 @@ use crate::pictures::avi::AviWriter;
 use crate::pictures::film::{SHOTS_PER_SECOND, Shot, can_move};
 use crate::play;
 use crate::replay::{check_inputs, journal_in};
+use crate::sound::{Reporter, Sounded, Track};
 
 /// Draws what the arguments ask for, with the data in `root`.
 ///
@@ -44,7 +46,7 @@ pub fn capture(arguments: &CaptureArguments, root: &Path) -> Result<()> {
     }
     let mut game =
         Game::new(conditions, story.header.frames).context("cannot set up the recorded alley")?;
-    let mut shots = Shots::new(arguments.at, until);
+    let mut shots = Shots::new(arguments.at, until, Reporter::of(&config));
     for input in &story.inputs {
         game.step(input);
         shots.look(&game);
@@ -91,20 +93,28 @@ struct Shots {
     until: f64,
     still: Vec<Visible>,
     taken: Vec<Shot>,
+    /// Takes the sound; `None` in a scene without.
+    reporter: Option<Reporter>,
+    sounds: Vec<Sounded>,
 }
 
 impl Shots {
-    fn new(from: f64, until: f64) -> Self {
+    fn new(from: f64, until: f64, reporter: Option<Reporter>) -> Self {
         Self {
             from,
             until,
             still: Vec::new(),
             taken: Vec::new(),
+            reporter,
+            sounds: Vec::new(),
         }
     }
 
     /// Takes a snapshot of the first frame that is due.
     fn look(&mut self, game: &Game) {
+        if let Some(reporter) = &mut self.reporter {
+            self.sounds.extend(reporter.report(game));
+        }
         let period = 1.0 / f64::from(SHOTS_PER_SECOND);
         let due = self.from + period * self.taken.len() as f64;
         let is_one = self.taken.is_empty() || due <= self.until;
@@ -143,6 +153,7 @@ impl Camera {
 
     fn video(mut self, shots: &Shots, out: &Path) -> Result<PathBuf> {
         const FAILED: &str = "cannot write the video";
+        let track = self.sound_track(shots);
         let mut writer = None;
         let mut progress = play::Progress::new();
         for (number, shot) in shots.taken.iter().enumerate() {
@@ -152,15 +163,45 @@ impl Camera {
             let video = match &mut writer {
                 Some(video) => video,
                 None => {
-                    let video = AviWriter::new(Draft::at(out)?, width, height, SHOTS_PER_SECOND);
+                    let rate = track.as_ref().map(|track| track.sample_rate);
+                    let draft = Draft::at(out)?;
+                    let video = AviWriter::new(draft, (width, height), SHOTS_PER_SECOND, rate);
                     writer.insert(video.context(FAILED)?)
                 }
             };
             video.push(&picture).context(FAILED)?;
+            if let Some(track) = &track {
+                video.push_sound(track.of_picture(number)).context(FAILED)?;
+            }
         }
         progress.end();
         let video = writer.context("there is nothing in this span")?;
         video.finish().context(FAILED)?.finish()
+    }
+
+    /// What is heard during all pictures; `None` in a scene without sound.
+    fn sound_track(&self, shots: &Shots) -> Option<Track> {
+        let mut track = Track::new(self.painter.sound()?, SHOTS_PER_SECOND);
+        let heads: Vec<_> = shots.taken.iter().map(|shot| self.listener(shot)).collect();
+        track.add(&shots.sounds, shots.taken.first()?.time, &heads);
+        Some(track)
+    }
+
+    /// Where the ears are while a snapshot is seen: with the eyes.
+    fn listener(&self, shot: &Shot) -> Listener {
+        match (self.view, shot.head) {
+            (ViewChoice::Bird, _) | (_, None) => {
+                let view = convert::bird(1.0);
+                Listener {
+                    position: view.position.as_dvec3(),
+                    orientation: view.rotation.as_dquat(),
+                }
+            }
+            (ViewChoice::Eye, Some(head)) => Listener {
+                position: head.position,
+                orientation: head.rotation,
+            },
+        }
     }
 
     /// Both eyes side by side, or the one of a bird.

@@ -33,6 +33,7 @@ use crate::panel::{Panel, PanelStock};
 use crate::pictures::{Painter, Wanted};
 use crate::play::{self, Progress};
 use crate::session::{Session, Setup};
+use crate::sound::Ears;
 use crate::study::attendant::Attendant;
 use attention::Attention;
 use fading::Fading;
@@ -71,7 +72,11 @@ pub fn run(
         stage.headset.headset().runtime
     );
     // Last: nothing is written before everything else works.
-    let session = Session::start(setup)?;
+    let mut session = Session::start(setup)?;
+    let ears = Ears::open(&config);
+    if let Some(line) = ears.line() {
+        session.device(line)?;
+    }
     println!(
         "Recording into {}. Ctrl-C ends and saves.",
         session.folder().display()
@@ -93,6 +98,7 @@ pub fn run(
         throws: Throws::default(),
         attention: Attention::new(),
         fading: Fading::new(config.hand.lost_grip_s),
+        ears,
         refusal: String::new(),
         config: config.clone(),
         settings,
@@ -163,6 +169,7 @@ struct Player {
     /// What a study asks in the room.
     panel: Panel,
     times: FrameTimes,
+    ears: Ears,
     /// What the hands did around each throw.
     throws: Throws,
     /// Whether the participant plays.
@@ -277,7 +284,7 @@ impl Player {
         let is_here = self.attention.is_here(headset.focus());
         let at = frame.display_time_ns();
         let (participant, panel, keys) = (&mut self.participant, &mut self.panel, &self.shared);
-        let fading = &mut self.fading;
+        let (fading, ears) = (&mut self.fading, &mut self.ears);
         let played = self.shared.with(|session| {
             let mut input = if is_here {
                 let is_holding = session.game().held().is_some();
@@ -293,6 +300,8 @@ impl Player {
                 panel.attend(session)?;
             }
             let game = session.game();
+            ears.notice(game);
+            ears.hear(game);
             let visible = game.visible_at(participant.share());
             let is_holding = game.held().is_some();
             let mut scene = convert::scene(visible.iter(), &stage.stock, is_holding);

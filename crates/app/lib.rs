@@ -29,6 +29,7 @@ pub mod root;
 pub mod scenery;
 pub mod session;
 pub mod shot;
+pub mod sound;
 pub mod strike_map;
 pub mod study;
 pub mod window;

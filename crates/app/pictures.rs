@@ -39,6 +39,8 @@ pub struct Painter {
     text: TextPainter,
     stock: Stock,
     display: DisplayConfig,
+    /// How the scene sounds; `None` in one without sound.
+    sound: Option<sound::Settings>,
     /// Middle of the pin deck in front, world frame.
     headpin_z: f64,
     /// Set from outside to stop drawing.
@@ -72,6 +74,7 @@ impl Painter {
             text,
             stock,
             display: config.display.clone(),
+            sound: crate::sound::settings(config),
             headpin_z: config.lane.headpin_z_m,
             stop: Arc::default(),
         })
@@ -157,6 +160,11 @@ impl Painter {
     /// The display that pictures are for.
     pub fn display(&self) -> &DisplayConfig {
         &self.display
+    }
+
+    /// How the scene sounds; `None` in one without sound.
+    pub fn sound(&self) -> Option<sound::Settings> {
+        self.sound
     }
 
     /// Middle of the pin deck in front, world frame [m].

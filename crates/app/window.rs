@@ -31,6 +31,7 @@ use crate::panel::{Panel, PanelStock};
 use crate::pictures::{Painter, Wanted};
 use crate::play::{self, Progress};
 use crate::session::{Session, Setup};
+use crate::sound::Ears;
 use crate::study::attendant::Attendant;
 use cost::Meter;
 use keys::{Command, Keys};
@@ -141,6 +142,7 @@ struct Stage {
     meter: Meter,
     keys: Keys,
     session: Session,
+    ears: Ears,
     /// Up to when the alley has been simulated.
     simulated: Instant,
 }
@@ -177,7 +179,11 @@ impl Shell {
         let overlay = Overlay::new(TextPainter::new(&gpu));
         let panel_stock = PanelStock::new(&gpu, &mut renderer)?;
         // Last: nothing is written before everything else works.
-        let session = Session::start(setup)?;
+        let mut session = Session::start(setup)?;
+        let ears = Ears::open(session.game().config());
+        if let Some(line) = ears.line() {
+            session.device(line)?;
+        }
         println!(
             "Recording into {}. F1 shows the keys, Esc ends and saves.",
             session.folder().display()
@@ -193,6 +199,7 @@ impl Shell {
             meter: Meter::new(),
             keys: Keys::default(),
             session,
+            ears,
             simulated,
         });
         Ok(())
@@ -215,7 +222,9 @@ impl Shell {
             let watch = stage.meter.stopwatch();
             stage.session.frame_watched(input, watch)?;
             stage.overlay.notice(stage.session.game());
+            stage.ears.notice(stage.session.game());
         }
+        stage.ears.hear(stage.session.game());
         stage.simulated += Duration::from_secs_f64(f64::from(count) * self.frame_s);
         if let Some(attendant) = &mut self.attendant {
             attendant.attend(&mut stage.session)?;

@@ -180,7 +180,7 @@ impl Gallery<'_> {
         let (headings, instants) = captions.split_at(count);
         let draft = folder.draft(name)?;
         let mut video =
-            AviWriter::new(draft, width, height, SHOTS_PER_SECOND).context(UNWRITTEN)?;
+            AviWriter::new(draft, (width, height), SHOTS_PER_SECOND, None).context(UNWRITTEN)?;
         for ((frame, time), instant) in (0..=frames).zip(times).zip(instants) {
             if frame.is_multiple_of(SHOTS_PER_SECOND) {
                 (self.progress)(&format!("video: picture {frame} of {frames}"));

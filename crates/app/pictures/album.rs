@@ -4,6 +4,7 @@ use anyhow::Result;
 use game::{Model, Visible};
 use image::RgbaImage;
 use renderer::View;
+use sound::Listener;
 
 use super::Painter;
 use super::film::{Film, Shot};
@@ -64,6 +65,15 @@ impl Album<'_> {
                 place.is_some_and(|[x, y]| (0.0..=1.0).contains(&x) && (0.0..=1.0).contains(&y))
             })
         })
+    }
+
+    /// Where the ears are while a moment is seen.
+    pub fn listener(&self, shot: &Shot, eyes: Eyes) -> Listener {
+        let [left, right] = self.views(shot, eyes);
+        Listener {
+            position: (0.5 * (left.position + right.position)).as_dvec3(),
+            orientation: left.rotation.as_dquat(),
+        }
     }
 
     fn views(&self, shot: &Shot, eyes: Eyes) -> [View; 2] {

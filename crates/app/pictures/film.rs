@@ -3,6 +3,8 @@
 use game::{Button, EventKind, Game, Model, Visible};
 use physics::Pose;
 
+use crate::sound::{Reporter, Sounded};
+
 /// Snapshots per second: a third of the scripted rate. Every one of them may become a picture of the
 /// video, which has to be drawn without a graphics card too.
 pub const SHOTS_PER_SECOND: u32 = 30;
@@ -50,6 +52,8 @@ pub struct Film {
     pub shots: Vec<Shot>,
     /// In the order of play.
     pub throws: Vec<Throw>,
+    /// What sounded, in the order of time; nothing in a scene without sound.
+    pub sounds: Vec<Sounded>,
     /// Pins on the score sheet so far.
     pub total: u32,
 }
@@ -77,6 +81,8 @@ pub struct Camera {
     /// The things that never move; taken once.
     still: Vec<Visible>,
     films: Vec<Film>,
+    /// Takes the sound; `None` in a scene without.
+    reporter: Option<Reporter>,
     is_filming: bool,
     last_shot: Option<f64>,
     grab: Option<usize>,
@@ -95,6 +101,7 @@ impl Camera {
         Camera {
             still,
             films: Vec::new(),
+            reporter: Reporter::of(game.config()),
             is_filming: false,
             last_shot: None,
             grab: None,
@@ -113,6 +120,7 @@ impl Camera {
                         button,
                         shots: Vec::new(),
                         throws: Vec::new(),
+                        sounds: Vec::new(),
                         total: 0,
                     });
                     self.is_filming = true;
@@ -132,6 +140,11 @@ impl Camera {
         }
         for event in game.events() {
             self.note(&event.kind);
+        }
+        if let (Some(reporter), Some(film), true) =
+            (&mut self.reporter, self.films.last_mut(), self.is_filming)
+        {
+            film.sounds.extend(reporter.report(game));
         }
     }
 

@@ -10,6 +10,7 @@ use super::album::{Album, Eyes};
 use super::avi::AviWriter;
 use super::film::{Film, SHOTS_PER_SECOND, Shot, Throw};
 use super::layout::{paper, place};
+use crate::sound::Track;
 
 /// Pixels of one eye's picture: chosen so that two videos take under two minutes on two cores
 /// without a graphics card.
@@ -63,8 +64,14 @@ pub fn write(album: &mut Album<'_>) -> Result<Option<PathBuf>> {
         .map(|throw| caption(film, throw))
         .collect();
     let captions = album.painter.captions(&lines)?;
-    let mut video =
-        AviWriter::new(draft, 2 * size.0, size.1 + TEXT, SHOTS_PER_SECOND).context(FAILED)?;
+    let track = sound_track(album, &frames);
+    let mut video = AviWriter::new(
+        draft,
+        (2 * size.0, size.1 + TEXT),
+        SHOTS_PER_SECOND,
+        track.as_ref().map(|track| track.sample_rate),
+    )
+    .context(FAILED)?;
     for (number, (clip, index)) in frames.iter().enumerate() {
         if number.is_multiple_of(SHOTS_PER_SECOND as usize) {
             (album.progress)(&format!(
@@ -76,11 +83,27 @@ pub fn write(album: &mut Album<'_>) -> Result<Option<PathBuf>> {
         let [left, right] = album.draw(&film.shots[*index], clip.eyes, size)?;
         let picture = page(&left, &right, &captions[clip.throw]);
         video.push(&picture).context(FAILED)?;
+        if let Some(track) = &track {
+            video.push_sound(track.of_picture(number)).context(FAILED)?;
+        }
     }
     Ok(Some(video.finish().context(FAILED)?.finish()?))
 }
 
 const FAILED: &str = "cannot write the video of highlights: is the disk full?";
+
+/// What is heard during all pictures, clip by clip; `None` in a scene without sound.
+fn sound_track(album: &Album<'_>, frames: &[(Clip, usize)]) -> Option<Track> {
+    let mut track = Track::new(album.painter.sound()?, SHOTS_PER_SECOND);
+    for clip in frames.chunk_by(|a, b| a.0 == b.0) {
+        let heads: Vec<_> = clip
+            .iter()
+            .map(|(clip, index)| album.listener(&album.film.shots[*index], clip.eyes))
+            .collect();
+        track.add(&album.film.sounds, clip[0].0.from, &heads);
+    }
+    Some(track)
+}
 
 /// One picture of the video: the eyes side by side, the caption below.
 fn page(left: &RgbaImage, right: &RgbaImage, caption: &RgbaImage) -> RgbImage {
@@ -192,6 +215,7 @@ mod tests {
             button: Button::Red,
             shots: (0..300 * fallen.len()).map(shot).collect(),
             throws: fallen.iter().enumerate().map(throw).collect(),
+            sounds: Vec::new(),
             total: 0,
         }
     }
