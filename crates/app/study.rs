@@ -1,7 +1,7 @@
 //! `bowling study`: an experiment from its plan to its tables.
 //!
-//! [`seat`] turns a slot of the plan into the settings of a session, [`run`] plays it, [`attendant`] answers or asks what is
-//! due, [`tables`] makes every table from the journals.
+//! `seat` turns a slot of the plan into the settings of a session, `run` plays it, `attendant` answers or asks what is
+//! due, `tables` makes every table from the journals.
 
 mod approaches;
 pub mod attendant;
