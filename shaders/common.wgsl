@@ -6,6 +6,8 @@ struct Eye {
     clip_from_world: mat4x4f,
     // xyz: position of the eye [m]; w is unused.
     position: vec4f,
+    // xy: one over the size of the picture [pixels]; z: pixels of the mirror's image per radian; w is unused.
+    mirror: vec4f,
 }
 
 // The instance's transform arrives as the three rows of an affine matrix.

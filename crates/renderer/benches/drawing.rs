@@ -81,6 +81,7 @@ fn frame(criterion: &mut Criterion) {
         let settings = RendererSettings {
             samples: 4,
             shadow_size,
+            ..RendererSettings::FULL
         };
         let mut renderer = Renderer::new(&gpu, settings).expect("good settings");
         let scene = scene(&mut renderer);

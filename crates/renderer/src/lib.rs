@@ -5,7 +5,8 @@
 //! they are, brighter ones are rolled off towards white.
 //!
 //! One [`Gpu`] serves a [`Renderer`], a [`TextPainter`] and a [`WindowTarget`]. A frame is one shadow map for all eyes,
-//! then one lit pass per eye. Everything works alike through Vulkan and OpenGL, also on software drivers.
+//! then for each eye the image in the glossy floor and one lit pass. What a scene or the settings do not call for has no
+//! pass, pipeline or texture. Everything works alike through Vulkan and OpenGL, also on software drivers.
 //!
 //! ```no_run
 //! use renderer::{BackendChoice, Fov, Gpu, Instance, Material, MeshData, Renderer, RendererSettings, Scene, View};
@@ -56,7 +57,8 @@ pub use mesh::{MeshData, Vertex};
 pub use relay::relay;
 pub use renderer::{MAX_VIEWS, Renderer, RendererSettings};
 pub use scene::{
-    Instance, Lamp, Light, LightSource, MAX_LAMPS, Material, MeshId, Scene, TextureId,
+    Enclosure, Instance, Lamp, Light, LightSource, MAX_LAMPS, MAX_OCCLUDERS, Material, MeshId,
+    Occluder, Pattern, Scene, TextureId,
 };
 pub use text::{TextBlock, TextPainter};
 pub use texture::load_image;

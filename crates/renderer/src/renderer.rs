@@ -4,12 +4,15 @@ mod batches;
 mod check;
 mod library;
 
+use glam::Vec4;
 use image::{Rgba, RgbaImage};
 
-use crate::passes::lit::{LitDraw, LitInputs, LitPass, Targets};
+use crate::passes::lit::{LitDraw, LitInputs, LitPass, Shading, Targets};
+use crate::passes::mirror::{self, MirrorDraw, MirrorPass};
 use crate::passes::shadow::{LightFrame, ShadowPass};
 use crate::passes::{EYE_STRIDE, GpuMesh};
 use crate::scene::Scene;
+use crate::shaders::Lookups;
 use crate::texture::{self, Texture};
 use crate::uniforms::{EyeRaw, LightingRaw};
 use crate::{Gpu, RenderError, View};
@@ -25,14 +28,31 @@ pub struct RendererSettings {
     pub samples: u32,
     /// The shadow map has this number squared of texels; 0 draws no shadows, at no cost.
     pub shadow_size: u32,
+    /// The glossy floor shows what stands on it; without, at no cost, it shows lamps and sky alone.
+    pub reflection: bool,
+    /// Occluders and corners dim the sky; without, at no cost, it is bright everywhere.
+    pub occlusion: bool,
+    /// Textures have smaller copies for the distance, and highlights are as wide as a pixel needs; without, both sparkle.
+    pub filtered: bool,
+    /// One colour a face: no textures, gloss, shadows, reflection or occlusion, whatever else is asked for.
+    pub flat: bool,
+}
+
+impl RendererSettings {
+    /// Everything that a scene may call for.
+    pub const FULL: Self = Self {
+        samples: 4,
+        shadow_size: 2048,
+        reflection: true,
+        occlusion: true,
+        filtered: true,
+        flat: false,
+    };
 }
 
 impl Default for RendererSettings {
     fn default() -> Self {
-        Self {
-            samples: 4,
-            shadow_size: 2048,
-        }
+        Self::FULL
     }
 }
 
@@ -47,14 +67,15 @@ pub struct Renderer {
     white: Texture,
     texture_layout: wgpu::BindGroupLayout,
     sampler: wgpu::Sampler,
-    /// The views' eyes, then the light's.
+    /// The views' eyes, their mirror images, then the light's.
     eyes: wgpu::Buffer,
     lighting: wgpu::Buffer,
     instances: wgpu::Buffer,
     /// Made when the first scene needs them.
     shadow: Option<ShadowPass>,
-    lit_shadowed: Option<LitPass>,
-    lit_plain: Option<LitPass>,
+    mirror: Option<MirrorPass>,
+    /// One for each shading that was called for.
+    lit: Vec<LitPass>,
     targets: Option<Targets>,
     frame: Frame,
 }
@@ -89,7 +110,7 @@ impl Renderer {
         };
         let uniform = wgpu::BufferUsages::UNIFORM;
         let texture_layout = texture::bind_group_layout(device);
-        let sampler = texture::sampler(gpu);
+        let sampler = texture::sampler(gpu, settings.filtered);
         let white_pixel = RgbaImage::from_pixel(1, 1, Rgba([255; 4]));
         Ok(Self {
             settings,
@@ -98,12 +119,12 @@ impl Renderer {
             white: Texture::new(gpu, &texture_layout, &sampler, &white_pixel)?,
             texture_layout,
             sampler,
-            eyes: buffer("eyes", EYE_STRIDE * (MAX_VIEWS as u64 + 1), uniform),
+            eyes: buffer("eyes", EYE_STRIDE * (LIGHT_EYE as u64 + 1), uniform),
             lighting: buffer("lighting", size_of::<LightingRaw>() as u64, uniform),
             instances: instance_buffer(device, 64),
             shadow: None,
-            lit_shadowed: None,
-            lit_plain: None,
+            mirror: None,
+            lit: Vec::new(),
             targets: None,
             frame: Frame::default(),
             gpu: gpu.clone(),
@@ -118,6 +139,19 @@ impl Renderer {
     /// The settings it was made with.
     pub fn settings(&self) -> RendererSettings {
         self.settings
+    }
+
+    /// The passes that it has made so far, each with its pipeline and textures; what no scene called for is not among them.
+    pub fn passes(&self) -> Vec<&'static str> {
+        let mut names = Vec::new();
+        names.extend(self.shadow.as_ref().map(|_| "shadow"));
+        names.extend(self.mirror.as_ref().map(|_| "mirror"));
+        names.extend(self.lit.iter().map(|pass| match pass.shading {
+            Shading::Flat => "flat",
+            Shading::Smooth(lookups) if lookups.occlusion => "lit with occlusion",
+            Shading::Smooth(_) => "lit",
+        }));
+        names
     }
 
     /// Records the passes that draw `scene` for each view into its target.
@@ -160,17 +194,14 @@ impl Renderer {
         let mut eyes = Vec::with_capacity(MAX_VIEWS);
         for view in views {
             view.check()?;
-            eyes.push(EyeRaw {
-                clip_from_world: view.clip_from_world(),
-                position: view.position.extend(1.0),
-            });
+            eyes.push(view);
         }
         self.check_scene(scene)?;
         let light = scene.light.as_ref().map(LightFrame::new).transpose()?;
         self.pack_instances(scene);
         self.frame.background = scene.background;
-        self.fit_passes(light.as_ref());
-        self.write_uniforms(scene, &eyes, light.as_ref());
+        self.fit_passes(scene, light.as_ref(), size);
+        self.write_uniforms(scene, &eyes, light.as_ref(), size);
         if self
             .targets
             .as_ref()
@@ -181,47 +212,88 @@ impl Renderer {
         Ok(())
     }
 
+    /// What this frame looks up: what the settings allow and the scene calls for.
+    fn lookups(&self, scene: &Scene) -> Option<Lookups> {
+        let settings = &self.settings;
+        let is_glossy = || scene.instances.iter().any(|one| one.material.mirror > 0.0);
+        let has_occlusion = !scene.occluders.is_empty() || scene.enclosure.is_some();
+        (!settings.flat).then(|| Lookups {
+            shadows: settings.shadow_size > 0 && scene.light.is_some(),
+            mirror: settings.reflection && is_glossy(),
+            occlusion: settings.occlusion && has_occlusion,
+        })
+    }
+
     /// Makes the passes that this frame needs, and no others.
-    fn fit_passes(&mut self, light: Option<&LightFrame>) {
+    fn fit_passes(&mut self, scene: &Scene, light: Option<&LightFrame>, size: [u32; 2]) {
         let device = &self.gpu.device;
-        let size = self.settings.shadow_size;
+        let lookups = self.lookups(scene);
+        self.frame.lookups = lookups;
         let mut inputs = LitInputs {
             eyes: &self.eyes,
             lighting: &self.lighting,
             texture_layout: &self.texture_layout,
             shadow_map: None,
+            mirror_map: None,
             samples: self.settings.samples,
+            widen_highlights: self.settings.filtered,
         };
-        let Some(light) = light.filter(|_| size > 0) else {
-            self.frame.shadowed = false;
-            self.lit_plain
-                .get_or_insert_with(|| LitPass::new(device, &inputs));
-            return;
-        };
-        self.frame.shadowed = true;
-        let shadow = self
-            .shadow
-            .get_or_insert_with(|| ShadowPass::new(device, &self.eyes, size, light));
-        let is_new = shadow.fit(device, size, light);
-        inputs.shadow_map = Some(&shadow.map.view);
-        match &mut self.lit_shadowed {
-            Some(lit) if is_new => lit.rebind(device, &inputs),
-            Some(_) => {}
-            none => *none = Some(LitPass::new(device, &inputs)),
+        let mut is_new = false;
+        if lookups.is_some_and(|lookups| lookups.mirror) {
+            let mirror = self
+                .mirror
+                .get_or_insert_with(|| MirrorPass::new(device, &inputs, size));
+            is_new |= mirror.fit(device, size);
+            inputs.mirror_map = Some((&mirror.map.view, &mirror.sampler));
         }
+        if let (true, Some(light)) = (lookups.is_some_and(|lookups| lookups.shadows), light) {
+            let size = self.settings.shadow_size;
+            let shadow = self
+                .shadow
+                .get_or_insert_with(|| ShadowPass::new(device, &self.eyes, size, light));
+            is_new |= shadow.fit(device, size, light);
+            inputs.shadow_map = Some(&shadow.map.view);
+        }
+        let shading = lookups.map_or(Shading::Flat, Shading::Smooth);
+        if is_new {
+            // The others hold the maps that there were; one of them that is called for again is made anew.
+            self.lit.retain(|pass| pass.shading == shading);
+        }
+        let known = self.lit.iter().position(|pass| pass.shading == shading);
+        let place = known.unwrap_or(self.lit.len());
+        match known {
+            Some(place) if is_new => self.lit[place].rebind(device, &inputs),
+            Some(_) => {}
+            None => self.lit.push(LitPass::new(device, shading, &inputs)),
+        }
+        self.lit[place].fit(device, &self.frame.batches, &inputs);
     }
 
-    fn write_uniforms(&self, scene: &Scene, eyes: &[EyeRaw], light: Option<&LightFrame>) {
+    fn write_uniforms(
+        &self,
+        scene: &Scene,
+        views: &[View],
+        light: Option<&LightFrame>,
+        size: [u32; 2],
+    ) {
         let queue = &self.gpu.queue;
-        for (index, eye) in eyes.iter().enumerate() {
+        let write = |index: usize, eye: &EyeRaw| {
             queue.write_buffer(&self.eyes, eye_offset(index), bytemuck::bytes_of(eye));
+        };
+        for (index, view) in views.iter().enumerate() {
+            let eye = EyeRaw::of_view(view, size, mirror::map_size(size));
+            write(index, &eye);
+            if self.frame.lookups.is_some_and(|lookups| lookups.mirror) {
+                write(MAX_VIEWS + index, &eye.mirrored());
+            }
         }
         if let Some(light) = light {
             let eye = EyeRaw {
                 clip_from_world: light.clip_from_world,
                 position: light.position,
+                mirror: Vec4::ZERO,
             };
-            queue.write_buffer(&self.eyes, eye_offset(MAX_VIEWS), bytemuck::bytes_of(&eye));
+            write(LIGHT_EYE, &eye);
         }
         let map_size = self.shadow.as_ref().map(|shadow| shadow.map.size);
         let lighting = LightingRaw::new(scene, light, map_size);
@@ -229,11 +301,32 @@ impl Renderer {
     }
 
     pub(crate) fn record_shadow(&self, encoder: &mut wgpu::CommandEncoder) {
-        if let (true, Some(shadow)) = (self.frame.shadowed, &self.shadow) {
-            let offset = eye_offset(MAX_VIEWS) as u32;
+        let is_shadowed = self.frame.lookups.is_some_and(|lookups| lookups.shadows);
+        if let (true, Some(shadow)) = (is_shadowed, &self.shadow) {
+            let offset = eye_offset(LIGHT_EYE) as u32;
             let batches = &self.frame.batches;
             shadow.record(encoder, offset, &self.instances, batches, &self.meshes);
         }
+    }
+
+    /// The image in the floor for one eye; only that eye's lit pass may follow before the next one's.
+    fn record_mirror(&self, encoder: &mut wgpu::CommandEncoder, index: usize) {
+        let is_glossy = self.frame.lookups.is_some_and(|lookups| lookups.mirror);
+        let Some(mirror) = self.mirror.as_ref().filter(|_| is_glossy) else {
+            return;
+        };
+        mirror.record(
+            encoder,
+            &MirrorDraw {
+                eye_offset: eye_offset(MAX_VIEWS + index) as u32,
+                background: self.frame.background,
+                instances: &self.instances,
+                batches: &self.frame.batches,
+                meshes: &self.meshes,
+                textures: &self.textures,
+                white: &self.white,
+            },
+        );
     }
 
     pub(crate) fn record_eye(
@@ -242,12 +335,10 @@ impl Renderer {
         index: usize,
         target: &wgpu::TextureView,
     ) {
-        let lit = if self.frame.shadowed {
-            &self.lit_shadowed
-        } else {
-            &self.lit_plain
-        };
-        let lit = lit.as_ref().expect("prepare made the pass of this frame");
+        self.record_mirror(encoder, index);
+        let shading = self.frame.lookups.map_or(Shading::Flat, Shading::Smooth);
+        let lit = self.lit.iter().find(|pass| pass.shading == shading);
+        let lit = lit.expect("prepare made the pass of this frame");
         let targets = self.targets.as_ref().expect("prepare made the targets");
         lit.record(
             encoder,
@@ -265,6 +356,9 @@ impl Renderer {
         );
     }
 }
+
+/// Place of the light's eye in the buffer of eyes.
+const LIGHT_EYE: usize = 2 * MAX_VIEWS;
 
 fn eye_offset(index: usize) -> u64 {
     EYE_STRIDE * index as u64

@@ -10,6 +10,20 @@ pub struct MeshId(pub(crate) u32);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct TextureId(pub(crate) u32);
 
+/// What a surface's colour is multiplied by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Pattern {
+    /// The texture, as it is.
+    #[default]
+    Texture,
+    /// Planks along v [m], one to a unit of u; the texture holds their grain.
+    Planks,
+    /// A pile with coloured rings, one to a unit of u and v.
+    Carpet,
+    /// Panels with a joint round each, one to a unit of u and v.
+    Panels,
+}
+
 /// How a surface looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
@@ -23,8 +37,18 @@ pub struct Material {
     pub emission: f32,
     /// Picture that multiplies the base colour; its alpha is not used.
     pub texture: Option<TextureId>,
-    /// How many times the texture repeats per unit of the mesh's u and v.
+    /// How many times texture or pattern repeat per unit of the mesh's u and v.
     pub texture_repeat: [f32; 2],
+    /// What the base colour is multiplied by.
+    pub pattern: Pattern,
+    /// Share of the gloss that shows the image in the floor at y = 0, 0 to 1; above 0 for that floor alone.
+    pub mirror: f32,
+    /// It is seen in the glossy floor.
+    pub is_mirrored: bool,
+    /// It throws shadows.
+    pub casts_shadows: bool,
+    /// Shadows fall on it.
+    pub takes_shadows: bool,
 }
 
 impl Material {
@@ -37,6 +61,11 @@ impl Material {
             emission: 0.0,
             texture: None,
             texture_repeat: [1.0, 1.0],
+            pattern: Pattern::Texture,
+            mirror: 0.0,
+            is_mirrored: false,
+            casts_shadows: true,
+            takes_shadows: true,
         }
     }
 
@@ -113,6 +142,29 @@ pub struct Lamp {
 /// Most lamps in one scene; each costs time on every pixel.
 pub const MAX_LAMPS: usize = 8;
 
+/// A ball that hides the sky from what is near it; any thing is a few of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Occluder {
+    /// Its middle [m].
+    pub position: Vec3,
+    /// Its radius [m].
+    pub radius_m: f32,
+}
+
+/// Most occluders in one scene; each costs time on every pixel.
+pub const MAX_OCCLUDERS: usize = 32;
+
+/// The inside of a building: where its walls meet, less light arrives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Enclosure {
+    /// Least corner [m].
+    pub min: Vec3,
+    /// Greatest corner [m].
+    pub max: Vec3,
+    /// Distance over which the dimness fades [m].
+    pub reach_m: f32,
+}
+
 /// Everything that is drawn in one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
@@ -128,6 +180,10 @@ pub struct Scene {
     pub ground: [f32; 3],
     /// Linear colour where nothing is.
     pub background: [f32; 3],
+    /// What hides the sky, at most [`MAX_OCCLUDERS`].
+    pub occluders: Vec<Occluder>,
+    /// The building's inside, if its corners are to be dim.
+    pub enclosure: Option<Enclosure>,
 }
 
 impl Default for Scene {
@@ -140,6 +196,8 @@ impl Default for Scene {
             sky: [0.34, 0.32, 0.29],
             ground: [0.20, 0.16, 0.12],
             background: [0.02, 0.018, 0.016],
+            occluders: Vec::new(),
+            enclosure: None,
         }
     }
 }

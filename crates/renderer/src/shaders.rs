@@ -1,20 +1,72 @@
 //! Every shader of the program, put together from the files in `shaders/` by joining texts.
 
-/// A pass's text: the named files of `shaders/`, one after the other.
-macro_rules! join {
-    ($($file:literal),+) => {
-        concat!($(include_str!(concat!("../../../shaders/", $file, ".wgsl"))),+)
+/// The text of one file of `shaders/`.
+macro_rules! file {
+    ($file:literal) => {
+        include_str!(concat!("../../../shaders/", $file, ".wgsl"))
     };
 }
 
 /// Depth as the shadowing light sees it.
-pub(crate) const SHADOW: &str = join!("common", "shadow");
-/// Lit surfaces with filtered shadows.
-pub(crate) const LIT_SHADOWED: &str = join!("common", "lit", "shadow_filter");
-/// Lit surfaces when shadows are off: no map is bound and none is read.
-pub(crate) const LIT: &str = join!("common", "lit", "shadow_off");
+pub(crate) const SHADOW: &str = concat!(
+    include_str!("../../../shaders/common.wgsl"),
+    include_str!("../../../shaders/shadow.wgsl")
+);
+/// An image at half its size.
+pub(crate) const SHRINK: &str = file!("shrink");
 /// Images into rectangles of the window.
-pub(crate) const PRESENT: &str = join!("present");
+pub(crate) const PRESENT: &str = file!("present");
+
+/// What the eyes' pass looks up beside the surfaces themselves; what is off is neither bound nor read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Lookups {
+    pub shadows: bool,
+    pub mirror: bool,
+    pub occlusion: bool,
+}
+
+/// Lit surfaces, with these lookups.
+pub(crate) fn lit(lookups: Lookups) -> String {
+    let pick = |is_on, on, off| if is_on { on } else { off };
+    [
+        file!("common"),
+        file!("lighting"),
+        file!("look"),
+        file!("patterns"),
+        file!("lit"),
+        pick(lookups.shadows, file!("shadow_filter"), file!("shadow_off")),
+        pick(lookups.mirror, file!("mirror_seen"), file!("mirror_off")),
+        pick(
+            lookups.occlusion,
+            file!("occlusion"),
+            file!("occlusion_off"),
+        ),
+    ]
+    .concat()
+}
+
+/// What the floor mirrors.
+pub(crate) fn mirror() -> String {
+    [
+        file!("common"),
+        file!("lighting"),
+        file!("look"),
+        file!("mirror"),
+        file!("shadow_off"),
+    ]
+    .concat()
+}
+
+/// One colour a face.
+pub(crate) fn flat() -> String {
+    [
+        file!("common"),
+        file!("lighting"),
+        file!("shadow_off"),
+        file!("flat"),
+    ]
+    .concat()
+}
 
 #[cfg(test)]
 mod tests {
@@ -22,12 +74,24 @@ mod tests {
     use crate::uniforms::{EyeRaw, LampRaw, LightingRaw, PictureRaw};
     use wgpu::naga;
 
-    const ALL: [(&str, &str); 4] = [
-        ("shadow", SHADOW),
-        ("lit with shadows", LIT_SHADOWED),
-        ("lit", LIT),
-        ("present", PRESENT),
-    ];
+    fn all() -> Vec<(String, String)> {
+        let mut all = vec![
+            ("shadow".to_owned(), SHADOW.to_owned()),
+            ("shrink".to_owned(), SHRINK.to_owned()),
+            ("present".to_owned(), PRESENT.to_owned()),
+            ("mirror".to_owned(), mirror()),
+            ("flat".to_owned(), flat()),
+        ];
+        for bits in 0..8 {
+            let lookups = Lookups {
+                shadows: bits & 1 != 0,
+                mirror: bits & 2 != 0,
+                occlusion: bits & 4 != 0,
+            };
+            all.push((format!("{lookups:?}"), lit(lookups)));
+        }
+        all
+    }
 
     fn parsed(name: &str, text: &str) -> naga::Module {
         naga::front::wgsl::parse_str(text)
@@ -46,8 +110,8 @@ mod tests {
     #[test]
     fn every_pass_parses_and_validates() {
         use naga::valid::{Capabilities, ValidationFlags, Validator};
-        for (name, text) in ALL {
-            let module = parsed(name, text);
+        for (name, text) in all() {
+            let module = parsed(&name, &text);
             Validator::new(ValidationFlags::all(), Capabilities::empty())
                 .validate(&module)
                 .unwrap_or_else(|error| panic!("{name}: {error:?}"));
@@ -55,8 +119,47 @@ mod tests {
     }
 
     #[test]
+    fn a_lookup_that_is_off_binds_nothing() {
+        let bound = |lookups: Lookups| {
+            let module = parsed("lit", &lit(lookups));
+            let mut names: Vec<String> = module
+                .global_variables
+                .iter()
+                .filter(|(_, variable)| variable.binding.is_some())
+                .filter_map(|(_, variable)| variable.name.clone())
+                .collect();
+            names.sort();
+            names
+        };
+        let plain = ["base_sampler", "base_texture", "eye", "lighting"];
+        let occlusion = Lookups {
+            occlusion: true,
+            ..Lookups::default()
+        };
+        assert_eq!(bound(Lookups::default()), plain);
+        assert_eq!(bound(occlusion), plain);
+        assert!(!lit(Lookups::default()).contains("lighting.occluders["));
+        let shadows = Lookups {
+            shadows: true,
+            ..Lookups::default()
+        };
+        assert_eq!(bound(shadows).len(), plain.len() + 2);
+        let mirror = Lookups {
+            mirror: true,
+            ..Lookups::default()
+        };
+        assert_eq!(bound(mirror).len(), plain.len() + 2);
+        let flat = parsed("flat", &flat());
+        let textures = flat
+            .global_variables
+            .iter()
+            .filter(|(_, variable)| variable.space == naga::AddressSpace::Handle);
+        assert_eq!(textures.count(), 0);
+    }
+
+    #[test]
     fn structs_have_the_same_size_on_both_sides() {
-        let lit = parsed("lit", LIT_SHADOWED);
+        let lit = parsed("lit", &lit(Lookups::default()));
         assert_eq!(size_of_struct(&lit, "Eye"), Some(size_of::<EyeRaw>()));
         assert_eq!(size_of_struct(&lit, "Lamp"), Some(size_of::<LampRaw>()));
         assert_eq!(

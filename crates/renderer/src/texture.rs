@@ -44,20 +44,7 @@ impl Texture {
             view_formats: &[],
         });
         let view = texture.create_view(&Default::default());
-        let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("picture"),
-            layout,
-            entries: &[
-                wgpu::BindGroupEntry {
-                    binding: 0,
-                    resource: wgpu::BindingResource::TextureView(&view),
-                },
-                wgpu::BindGroupEntry {
-                    binding: 1,
-                    resource: wgpu::BindingResource::Sampler(sampler),
-                },
-            ],
-        });
+        let bind_group = bind_group(&gpu.device, layout, &view, sampler);
         let texture = Self {
             texture,
             bind_group,
@@ -124,6 +111,29 @@ pub(crate) fn single(
     })
 }
 
+/// A picture and its sampler, bound as [`bind_group_layout`] has them.
+pub(crate) fn bind_group(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    view: &wgpu::TextureView,
+    sampler: &wgpu::Sampler,
+) -> wgpu::BindGroup {
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("picture"),
+        layout,
+        entries: &[
+            wgpu::BindGroupEntry {
+                binding: 0,
+                resource: wgpu::BindingResource::TextureView(view),
+            },
+            wgpu::BindGroupEntry {
+                binding: 1,
+                resource: wgpu::BindingResource::Sampler(sampler),
+            },
+        ],
+    })
+}
+
 /// Bindings of one texture and its sampler.
 pub(crate) fn bind_group_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
@@ -153,7 +163,9 @@ pub(crate) fn bind_group_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout 
 ///
 /// Not on the processor: llvmpipe (Mesa 22.3) walks the whole footprint of a pixel texel by texel, and where a texture
 /// wraps round a ball the footprint is the whole texture. Single pictures took seconds.
-pub(crate) fn sampler(gpu: &Gpu) -> wgpu::Sampler {
+///
+/// Without `smaller_copies` every distance shows the picture's own texels, which then sparkle.
+pub(crate) fn sampler(gpu: &Gpu, smaller_copies: bool) -> wgpu::Sampler {
     let flags = gpu.adapter.get_downlevel_capabilities().flags;
     let offered = flags.contains(wgpu::DownlevelFlags::ANISOTROPIC_FILTERING) && !gpu.is_software();
     gpu.device.create_sampler(&wgpu::SamplerDescriptor {
@@ -163,7 +175,12 @@ pub(crate) fn sampler(gpu: &Gpu) -> wgpu::Sampler {
         mag_filter: wgpu::FilterMode::Linear,
         min_filter: wgpu::FilterMode::Linear,
         mipmap_filter: wgpu::MipmapFilterMode::Linear,
-        anisotropy_clamp: if offered { ANISOTROPY } else { 1 },
+        anisotropy_clamp: if offered && smaller_copies {
+            ANISOTROPY
+        } else {
+            1
+        },
+        lod_max_clamp: if smaller_copies { 32.0 } else { 0.0 },
         ..Default::default()
     })
 }
@@ -205,7 +222,7 @@ mod tests {
     #[test]
     fn texture_has_smaller_copies_down_to_one_pixel() {
         let gpu = Gpu::new(crate::BackendChoice::Noop).expect("the test backend needs no driver");
-        let (layout, sampler) = (bind_group_layout(&gpu.device), sampler(&gpu));
+        let (layout, sampler) = (bind_group_layout(&gpu.device), sampler(&gpu, true));
         for ((width, height), levels) in [((256, 100), 9), ((1, 1), 1), ((3, 5), 3)] {
             let image = RgbaImage::new(width, height);
             let texture = Texture::new(&gpu, &layout, &sampler, &image).expect("good");

@@ -3,8 +3,9 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Mat4, Vec3, Vec4};
 
+use crate::View;
 use crate::passes::shadow::LightFrame;
-use crate::scene::{Instance, MAX_LAMPS, Scene};
+use crate::scene::{Instance, MAX_LAMPS, Occluder, Scene};
 
 /// `Eye` in common.wgsl.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -12,9 +13,38 @@ use crate::scene::{Instance, MAX_LAMPS, Scene};
 pub(crate) struct EyeRaw {
     pub clip_from_world: Mat4,
     pub position: Vec4,
+    pub mirror: Vec4,
 }
 
-/// `Lamp` in lit.wgsl.
+impl EyeRaw {
+    /// An eye whose picture has `size` pixels and its image in the floor `mirror_size`.
+    pub fn of_view(view: &View, size: [u32; 2], mirror_size: [u32; 2]) -> Self {
+        let fov = &view.fov;
+        let pixels_per_unit = mirror_size[1] as f32 / (fov.up.tan() - fov.down.tan());
+        Self {
+            clip_from_world: view.clip_from_world(),
+            position: view.position.extend(1.0),
+            mirror: Vec4::new(
+                1.0 / size[0] as f32,
+                1.0 / size[1] as f32,
+                pixels_per_unit,
+                0.0,
+            ),
+        }
+    }
+
+    /// The same eye's mirror image below the plane y = 0: what it sees of the world is what the plane mirrors.
+    pub fn mirrored(&self) -> Self {
+        let flip = Vec3::new(1.0, -1.0, 1.0);
+        Self {
+            clip_from_world: self.clip_from_world * Mat4::from_scale(flip),
+            position: self.position * flip.extend(1.0),
+            mirror: self.mirror,
+        }
+    }
+}
+
+/// `Lamp` in lighting.wgsl.
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct LampRaw {
@@ -24,7 +54,7 @@ pub(crate) struct LampRaw {
     pub padding: f32,
 }
 
-/// `Lighting` in lit.wgsl.
+/// `Lighting` in lighting.wgsl.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct LightingRaw {
@@ -34,10 +64,16 @@ pub(crate) struct LightingRaw {
     pub light_color: Vec4,
     pub sky: Vec4,
     pub ground: Vec4,
+    pub room_min: Vec4,
+    pub room_max: Vec4,
     pub shadow_step_uv: [f32; 2],
     pub shadow_reach_m: f32,
     pub lamp_count: u32,
+    pub occluder_groups: u32,
+    pub padding: [u32; 3],
     pub lamps: [LampRaw; MAX_LAMPS],
+    pub groups: [Vec4; OCCLUDER_GROUPS],
+    pub occluders: [Vec4; OCCLUDER_GROUPS * GROUP_SIZE],
 }
 
 impl LightingRaw {
@@ -70,9 +106,53 @@ impl LightingRaw {
                 padding: 0.0,
             };
         }
+        if let Some(room) = &scene.enclosure {
+            raw.room_min = room.min.extend(room.reach_m);
+            raw.room_max = room.max.extend(0.0);
+        }
+        raw.group(&scene.occluders);
         raw
     }
+
+    /// Puts occluders that are near each other into one group, so that what is far from a group asks none of it.
+    fn group(&mut self, occluders: &[Occluder]) {
+        let mut groups: Vec<Vec<&Occluder>> = Vec::new();
+        for occluder in occluders {
+            let apart = |group: &[&Occluder]| group[0].position.distance(occluder.position);
+            let nearest = (0..groups.len())
+                .filter(|&index| groups[index].len() < GROUP_SIZE)
+                .min_by(|&a, &b| apart(&groups[a]).total_cmp(&apart(&groups[b])));
+            match nearest {
+                Some(index)
+                    if groups.len() == OCCLUDER_GROUPS || apart(&groups[index]) < GROUP_WIDTH_M =>
+                {
+                    groups[index].push(occluder);
+                }
+                _ => groups.push(vec![occluder]),
+            }
+        }
+        self.occluder_groups = groups.len() as u32;
+        for (index, group) in groups.iter().enumerate() {
+            let middle = group.iter().map(|one| one.position).sum::<Vec3>() / group.len() as f32;
+            let reach = group
+                .iter()
+                .map(|one| one.position.distance(middle) + FADED_AT * one.radius_m);
+            self.groups[index] = middle.extend(reach.fold(0.0, f32::max));
+            for (place, one) in group.iter().enumerate() {
+                let at = index * GROUP_SIZE + place;
+                self.occluders[at] = one.position.extend(one.radius_m);
+            }
+        }
+    }
 }
+
+/// As in lighting.wgsl; more places than occluders, because groups are not all full.
+const OCCLUDER_GROUPS: usize = 6;
+const GROUP_SIZE: usize = 8;
+/// Occluders nearer than this to the first of a group belong to it, while there is room [m].
+const GROUP_WIDTH_M: f32 = 1.5;
+/// At so many radii a sphere hides less than a hundredth of the sky, less than a picture can show where it fades.
+const FADED_AT: f32 = 11.0;
 
 /// `Picture` in present.wgsl.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -83,7 +163,7 @@ pub(crate) struct PictureRaw {
     pub padding: [u32; 3],
 }
 
-/// `InstanceInput` and `LookInput`: one instance as vertex attributes 3 to 10.
+/// `InstanceInput` and `LookInput`: one instance as vertex attributes 3 to 11.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct InstanceRaw {
@@ -93,13 +173,14 @@ pub(crate) struct InstanceRaw {
     pub normal_from_mesh: [[f32; 3]; 3],
     pub base_color: [f32; 4],
     pub surface: [f32; 4],
+    pub mirror: f32,
 }
 
 impl InstanceRaw {
-    pub const ATTRIBUTES: [wgpu::VertexAttribute; 8] = wgpu::vertex_attr_array![
+    pub const ATTRIBUTES: [wgpu::VertexAttribute; 9] = wgpu::vertex_attr_array![
         3 => Float32x4, 4 => Float32x4, 5 => Float32x4,
         6 => Float32x3, 7 => Float32x3, 8 => Float32x3,
-        9 => Float32x4, 10 => Float32x4
+        9 => Float32x4, 10 => Float32x4, 11 => Float32
     ];
 
     pub fn new(instance: &Instance) -> Self {
@@ -114,6 +195,7 @@ impl InstanceRaw {
                 .to_cols_array_2d(),
             base_color: [r, g, b, material.roughness.clamp(MIN_ROUGHNESS, 1.0)],
             surface: [material.specular, material.emission, repeat_u, repeat_v],
+            mirror: material.mirror,
         }
     }
 }
@@ -134,6 +216,30 @@ fn normal_matrix(world_from_mesh: &Mat4) -> Mat3 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_occluder_has_a_place_in_a_group_that_reaches_it() {
+        let occluders: Vec<Occluder> = (0..crate::MAX_OCCLUDERS)
+            .map(|i| Occluder {
+                position: Vec3::new(0.2 * (i % 5) as f32, 0.1, -0.9 * i as f32),
+                radius_m: 0.05 + 0.001 * i as f32,
+            })
+            .collect();
+        let mut raw: LightingRaw = Zeroable::zeroed();
+        raw.group(&occluders);
+        let mut found = 0;
+        for group in 0..raw.occluder_groups as usize {
+            let bounds = raw.groups[group];
+            for sphere in &raw.occluders[group * GROUP_SIZE..(group + 1) * GROUP_SIZE] {
+                if sphere.w > 0.0 {
+                    found += 1;
+                    let away = bounds.truncate().distance(sphere.truncate());
+                    assert!(away + FADED_AT * sphere.w <= bounds.w * 1.0001, "{away}");
+                }
+            }
+        }
+        assert_eq!(found, occluders.len());
+    }
 
     #[test]
     fn normal_matrix_keeps_normals_square_to_the_surface() {

@@ -3,15 +3,16 @@
 //! Debian 12's lavapipe resolves every multisampled layer into the first, and loses geometry with multiview
 //! (Mesa 22.3.6); a pass of its own per eye is right on every driver.
 
-use super::{Batch, DEPTH_FORMAT, GpuMesh};
-use crate::shaders;
+use super::{Batch, DEPTH_FORMAT, Finish, GpuMesh};
+use crate::scene::Pattern;
+use crate::shaders::{self, Lookups};
 use crate::texture::{self, Texture};
 use crate::uniforms::LightingRaw;
 
 /// What the eyes are drawn into; the hardware encodes sRGB and blends and resolves in linear light.
 pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 
-/// `tone_map` of lit.wgsl, for colours that no shader touches.
+/// `tone_map` of lighting.wgsl, for colours that no shader touches.
 pub(crate) fn tone_map(color: [f32; 3]) -> [f32; 3] {
     const KNEE: f32 = 0.6;
     color.map(|value| {
@@ -44,10 +45,32 @@ impl Targets {
     }
 }
 
+/// How surfaces are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Shading {
+    /// Lit, with these lookups.
+    Smooth(Lookups),
+    /// One colour a face.
+    Flat,
+}
+
+impl Shading {
+    fn lookups(self) -> Lookups {
+        match self {
+            Self::Smooth(lookups) => lookups,
+            Self::Flat => Lookups::default(),
+        }
+    }
+}
+
 /// Draws the scene for one eye.
 #[derive(Debug)]
 pub(crate) struct LitPass {
-    pipeline: wgpu::RenderPipeline,
+    pub shading: Shading,
+    module: wgpu::ShaderModule,
+    pipeline_layout: wgpu::PipelineLayout,
+    /// One for each finish that was called for; one for all where faces have one colour.
+    pipelines: Vec<(Option<Finish>, wgpu::RenderPipeline)>,
     layout: wgpu::BindGroupLayout,
     bind_group: wgpu::BindGroup,
 }
@@ -59,30 +82,74 @@ pub(crate) struct LitInputs<'a> {
     pub texture_layout: &'a wgpu::BindGroupLayout,
     /// The shadow map, or `None` for a pass that knows no shadows.
     pub shadow_map: Option<&'a wgpu::TextureView>,
+    /// The image in the floor and how it is sampled, or `None` for a pass that knows no mirror.
+    pub mirror_map: Option<(&'a wgpu::TextureView, &'a wgpu::Sampler)>,
     pub samples: u32,
+    /// Highlights are as wide as the pixel needs.
+    pub widen_highlights: bool,
 }
 
 impl LitPass {
-    pub fn new(device: &wgpu::Device, inputs: &LitInputs<'_>) -> Self {
-        let layout = frame_layout(device, inputs.shadow_map.is_some());
+    /// A pass of this shading; the inputs hold what it looks up.
+    pub fn new(device: &wgpu::Device, shading: Shading, inputs: &LitInputs<'_>) -> Self {
+        let layout = frame_layout(device, shading.lookups());
         let bind_group = frame_bind_group(device, &layout, inputs);
-        let text = if inputs.shadow_map.is_some() {
-            shaders::LIT_SHADOWED
-        } else {
-            shaders::LIT
+        let (text, groups) = match shading {
+            Shading::Smooth(lookups) => (
+                shaders::lit(lookups),
+                vec![Some(&layout), Some(inputs.texture_layout)],
+            ),
+            Shading::Flat => (shaders::flat(), vec![Some(&layout)]),
         };
-        let module = super::shader(device, "lit", text);
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("lit"),
-            bind_group_layouts: &[Some(&layout), Some(inputs.texture_layout)],
+            bind_group_layouts: &groups,
             immediate_size: 0,
         });
-        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+        Self {
+            shading,
+            module: super::shader(device, "lit", text),
+            pipeline_layout,
+            pipelines: Vec::new(),
+            layout,
+            bind_group,
+        }
+    }
+
+    /// Makes the pipelines that these batches call for, unless they are there.
+    pub fn fit(&mut self, device: &wgpu::Device, batches: &[Batch], inputs: &LitInputs<'_>) {
+        for batch in batches {
+            let finish = self.finish(batch);
+            if self.pipelines.iter().all(|(known, _)| *known != finish) {
+                let pipeline = self.pipeline(device, finish, inputs);
+                self.pipelines.push((finish, pipeline));
+            }
+        }
+    }
+
+    fn finish(&self, batch: &Batch) -> Option<Finish> {
+        (self.shading != Shading::Flat).then_some(batch.finish)
+    }
+
+    fn pipeline(
+        &self,
+        device: &wgpu::Device,
+        finish: Option<Finish>,
+        inputs: &LitInputs<'_>,
+    ) -> wgpu::RenderPipeline {
+        let constants = finish.map_or(Vec::new(), |finish| {
+            self.constants(finish, inputs.widen_highlights)
+        });
+        let [vertex, fragment] = match finish {
+            Some(_) => ["vertex", "fragment"],
+            None => ["flat_vertex", "flat_fragment"],
+        };
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("lit"),
-            layout: Some(&pipeline_layout),
+            layout: Some(&self.pipeline_layout),
             vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("vertex"),
+                module: &self.module,
+                entry_point: Some(vertex),
                 compilation_options: Default::default(),
                 buffers: &super::vertex_buffers(),
             },
@@ -96,19 +163,38 @@ impl LitPass {
                 ..Default::default()
             },
             fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("fragment"),
-                compilation_options: Default::default(),
+                module: &self.module,
+                entry_point: Some(fragment),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: &constants,
+                    ..Default::default()
+                },
                 targets: &[Some(COLOR_FORMAT.into())],
             }),
             multiview_mask: None,
             cache: None,
-        });
-        Self {
-            pipeline,
-            layout,
-            bind_group,
+        })
+    }
+
+    /// The `override`s of the lit shader for a finish.
+    fn constants(&self, finish: Finish, widen_highlights: bool) -> Vec<(&'static str, f64)> {
+        let flag = |is_on: bool| f64::from(u8::from(is_on));
+        let pattern = match finish.pattern {
+            Pattern::Texture => 0.0,
+            Pattern::Planks => 1.0,
+            Pattern::Carpet => 2.0,
+            Pattern::Panels => 3.0,
+        };
+        let mut constants = vec![
+            ("PATTERN", pattern),
+            ("GLOSS", flag(finish.is_glossy)),
+            ("SHADOWED", flag(finish.takes_shadows)),
+            ("WIDEN_HIGHLIGHTS", flag(widen_highlights)),
+        ];
+        if self.shading.lookups().mirror {
+            constants.push(("MIRROR", flag(finish.is_mirror)));
         }
+        constants
     }
 
     /// Binds the inputs anew, for another shadow map; they must be of the kind that the pass was made for.
@@ -143,14 +229,23 @@ impl LitPass {
             )),
             ..Default::default()
         });
-        pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.bind_group, &[draw.eye_offset]);
         pass.set_vertex_buffer(1, draw.instances.slice(..));
+        let mut current = None;
         for batch in draw.batches {
-            let texture = batch
-                .texture
-                .map_or(draw.white, |id| &draw.textures[id.0 as usize]);
-            pass.set_bind_group(1, &texture.bind_group, &[]);
+            let finish = self.finish(batch);
+            if current != Some(finish) {
+                let made = self.pipelines.iter().find(|(known, _)| *known == finish);
+                let (_, pipeline) = made.expect("the frame's finishes were fitted");
+                pass.set_pipeline(pipeline);
+                current = Some(finish);
+            }
+            if self.shading != Shading::Flat {
+                let texture = batch
+                    .texture
+                    .map_or(draw.white, |id| &draw.textures[id.0 as usize]);
+                pass.set_bind_group(1, &texture.bind_group, &[]);
+            }
             draw.meshes[batch.mesh.0 as usize].draw(&mut pass, batch);
         }
     }
@@ -169,7 +264,8 @@ pub(crate) struct LitDraw<'a> {
     pub white: &'a Texture,
 }
 
-fn frame_layout(device: &wgpu::Device, shadows: bool) -> wgpu::BindGroupLayout {
+/// What a frame binds beside its textures.
+pub(crate) fn frame_layout(device: &wgpu::Device, lookups: Lookups) -> wgpu::BindGroupLayout {
     let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::FRAGMENT,
@@ -187,7 +283,7 @@ fn frame_layout(device: &wgpu::Device, shadows: bool) -> wgpu::BindGroupLayout {
             },
         ),
     ];
-    if shadows {
+    if lookups.shadows {
         entries.push(entry(
             2,
             wgpu::BindingType::Texture {
@@ -201,13 +297,28 @@ fn frame_layout(device: &wgpu::Device, shadows: bool) -> wgpu::BindGroupLayout {
             wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison),
         ));
     }
+    if lookups.mirror {
+        entries.push(entry(
+            4,
+            wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Float { filterable: true },
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
+            },
+        ));
+        entries.push(entry(
+            5,
+            wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+        ));
+    }
     device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("frame"),
         entries: &entries,
     })
 }
 
-fn frame_bind_group(
+/// The inputs, as [`frame_layout`] has them.
+pub(crate) fn frame_bind_group(
     device: &wgpu::Device,
     layout: &wgpu::BindGroupLayout,
     inputs: &LitInputs<'_>,
@@ -235,6 +346,16 @@ fn frame_bind_group(
         });
         entries.push(wgpu::BindGroupEntry {
             binding: 3,
+            resource: wgpu::BindingResource::Sampler(sampler),
+        });
+    }
+    if let Some((map, sampler)) = inputs.mirror_map {
+        entries.push(wgpu::BindGroupEntry {
+            binding: 4,
+            resource: wgpu::BindingResource::TextureView(map),
+        });
+        entries.push(wgpu::BindGroupEntry {
+            binding: 5,
             resource: wgpu::BindingResource::Sampler(sampler),
         });
     }

@@ -1,11 +1,12 @@
 //! The passes of a frame, one file each, with the same stem as the shader.
 
 pub(crate) mod lit;
+pub(crate) mod mirror;
 pub(crate) mod present;
 pub(crate) mod shadow;
 
 use crate::mesh::Vertex;
-use crate::scene::{MeshId, TextureId};
+use crate::scene::{Instance, Material, MeshId, Pattern, TextureId};
 use crate::uniforms::InstanceRaw;
 
 /// Instances that are drawn together: same mesh, same texture, consecutive in the instance buffer.
@@ -13,8 +14,58 @@ use crate::uniforms::InstanceRaw;
 pub(crate) struct Batch {
     pub mesh: MeshId,
     pub texture: Option<TextureId>,
+    pub finish: Finish,
+    pub is_mirrored: bool,
+    pub casts_shadows: bool,
     pub first: u32,
     pub count: u32,
+}
+
+/// What a pipeline is specialised for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Finish {
+    pub pattern: Pattern,
+    pub is_glossy: bool,
+    pub is_mirror: bool,
+    pub takes_shadows: bool,
+}
+
+impl Finish {
+    pub fn of(material: &Material) -> Self {
+        Self {
+            pattern: material.pattern,
+            is_glossy: material.specular > 0.0,
+            is_mirror: material.mirror > 0.0,
+            takes_shadows: material.takes_shadows,
+        }
+    }
+}
+
+impl Batch {
+    /// A batch of one instance.
+    pub fn of(instance: &Instance, first: u32) -> Self {
+        let material = &instance.material;
+        Self {
+            mesh: instance.mesh,
+            texture: material.texture,
+            finish: Finish::of(material),
+            is_mirrored: material.is_mirrored,
+            casts_shadows: material.casts_shadows,
+            first,
+            count: 1,
+        }
+    }
+
+    /// What instances of one batch have in common; by finish first, so that pipelines change seldom.
+    pub fn key(&self) -> (Finish, MeshId, Option<TextureId>, bool, bool) {
+        (
+            self.finish,
+            self.mesh,
+            self.texture,
+            self.is_mirrored,
+            self.casts_shadows,
+        )
+    }
 }
 
 /// A mesh on the device.
@@ -23,6 +74,8 @@ pub(crate) struct GpuMesh {
     vertices: wgpu::Buffer,
     indices: wgpu::Buffer,
     count: u32,
+    /// What is drawn for it where it is seen blurred.
+    pub stand_in: Option<MeshId>,
 }
 
 impl GpuMesh {
@@ -45,7 +98,13 @@ impl GpuMesh {
                 wgpu::BufferUsages::INDEX,
             ),
             count: mesh.indices.len() as u32,
+            stand_in: None,
         }
+    }
+
+    /// Triangles of it.
+    pub fn triangles(&self) -> u32 {
+        self.count / 3
     }
 
     /// Draws a batch of it; pipeline, bindings and the instance buffer are set.
@@ -54,6 +113,12 @@ impl GpuMesh {
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
         pass.draw_indexed(0..self.count, 0, batch.first..batch.first + batch.count);
     }
+}
+
+/// The mesh that is drawn for a batch in shadows and mirrors.
+fn blurred<'a>(meshes: &'a [GpuMesh], batch: &Batch) -> &'a GpuMesh {
+    let mesh = &meshes[batch.mesh.0 as usize];
+    mesh.stand_in.map_or(mesh, |id| &meshes[id.0 as usize])
 }
 
 /// Bytes between two eyes in the buffer of eyes: the largest alignment that a device may ask for.
@@ -131,7 +196,11 @@ fn depth_attachment(
     }
 }
 
-fn shader(device: &wgpu::Device, label: &str, text: &'static str) -> wgpu::ShaderModule {
+fn shader(
+    device: &wgpu::Device,
+    label: &str,
+    text: impl Into<std::borrow::Cow<'static, str>>,
+) -> wgpu::ShaderModule {
     device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some(label),
         source: wgpu::ShaderSource::Wgsl(text.into()),

@@ -239,8 +239,8 @@ impl ShadowPass {
         pass.set_pipeline(&self.pipeline);
         pass.set_bind_group(0, &self.bind_group, &[eye_offset]);
         pass.set_vertex_buffer(1, instances.slice(..));
-        for batch in batches {
-            meshes[batch.mesh.0 as usize].draw(&mut pass, batch);
+        for batch in batches.iter().filter(|batch| batch.casts_shadows) {
+            super::blurred(meshes, batch).draw(&mut pass, batch);
         }
     }
 }

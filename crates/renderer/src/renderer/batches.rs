@@ -3,6 +3,7 @@
 use super::Renderer;
 use crate::passes::Batch;
 use crate::scene::Scene;
+use crate::shaders::Lookups;
 use crate::uniforms::InstanceRaw;
 
 /// What `prepare` found out about the current frame; kept to reuse its memory.
@@ -13,37 +14,31 @@ pub(super) struct Frame {
     packed: Vec<InstanceRaw>,
     pub batches: Vec<Batch>,
     pub background: [f32; 3],
-    pub shadowed: bool,
+    /// What this frame looks up; `None` when it is drawn flat.
+    pub lookups: Option<Lookups>,
 }
 
 impl Renderer {
     /// Sorts instances into batches and sends them.
     pub(super) fn pack_instances(&mut self, scene: &Scene) {
         let frame = &mut self.frame;
-        let key = |at: u32| {
-            let instance = &scene.instances[at as usize];
-            (instance.mesh, instance.material.texture)
-        };
+        let batch = |at: u32, first| Batch::of(&scene.instances[at as usize], first);
         frame.order.clear();
         frame.order.extend(0..scene.instances.len() as u32);
         // By place in the scene last, so that the order is the same every time.
-        frame.order.sort_unstable_by_key(|&at| (key(at), at));
+        frame
+            .order
+            .sort_unstable_by_key(|&at| (batch(at, 0).key(), at));
         frame.packed.clear();
         frame.batches.clear();
         for &at in &frame.order {
-            let first = frame.packed.len() as u32;
+            let one = batch(at, frame.packed.len() as u32);
             frame
                 .packed
                 .push(InstanceRaw::new(&scene.instances[at as usize]));
-            let (mesh, texture) = key(at);
             match frame.batches.last_mut() {
-                Some(last) if (last.mesh, last.texture) == (mesh, texture) => last.count += 1,
-                _ => frame.batches.push(Batch {
-                    mesh,
-                    texture,
-                    first,
-                    count: 1,
-                }),
+                Some(last) if last.key() == one.key() => last.count += 1,
+                _ => frame.batches.push(one),
             }
         }
         let bytes: &[u8] = bytemuck::cast_slice(&frame.packed);

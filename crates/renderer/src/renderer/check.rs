@@ -4,7 +4,7 @@ use glam::Mat3;
 
 use super::Renderer;
 use crate::RenderError;
-use crate::scene::{Instance, Lamp, MAX_LAMPS, Scene, TextureId};
+use crate::scene::{Instance, Lamp, MAX_LAMPS, MAX_OCCLUDERS, Scene, TextureId};
 
 impl Renderer {
     /// One sentence on the first thing in it that cannot be drawn.
@@ -21,6 +21,12 @@ impl Renderer {
         };
         if let Some(at) = scene.lamps.iter().position(lamp_is_bad) {
             return fail(format!("lamp {at} needs a position and a range above zero"));
+        }
+        let count = scene.occluders.len();
+        if count > MAX_OCCLUDERS {
+            return fail(format!(
+                "it has {count} occluders, at most {MAX_OCCLUDERS} are drawn"
+            ));
         }
         for (at, instance) in scene.instances.iter().enumerate() {
             if let Some(reason) = self.what_is_wrong(instance) {

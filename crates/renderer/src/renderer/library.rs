@@ -6,7 +6,7 @@ use image::RgbaImage;
 
 use super::Renderer;
 use crate::passes::GpuMesh;
-use crate::scene::{MeshId, TextureId};
+use crate::scene::{Instance, MeshId, Scene, TextureId};
 use crate::texture::{self, Texture};
 use crate::{MeshData, RenderError};
 
@@ -19,6 +19,31 @@ impl Renderer {
         mesh.check()?;
         self.meshes.push(GpuMesh::new(&self.gpu.device, mesh));
         Ok(MeshId(self.meshes.len() as u32 - 1))
+    }
+
+    /// Draws `stand_in` for `mesh` in shadows and in the glossy floor, where both are blurred: fewer corners for the same sight.
+    ///
+    /// # Errors
+    /// If one of them is not this renderer's.
+    pub fn set_stand_in(&mut self, mesh: MeshId, stand_in: MeshId) -> Result<(), RenderError> {
+        if [mesh, stand_in]
+            .iter()
+            .any(|id| id.0 as usize >= self.meshes.len())
+        {
+            return Err(RenderError::Mesh("it is not this renderer's".to_owned()));
+        }
+        self.meshes[mesh.0 as usize].stand_in = Some(stand_in);
+        Ok(())
+    }
+
+    /// Triangles that one eye's picture of a scene has, in the lit pass; things that are not this renderer's count for none.
+    pub fn triangles(&self, scene: &Scene) -> u64 {
+        let of = |instance: &Instance| {
+            self.meshes
+                .get(instance.mesh.0 as usize)
+                .map_or(0, |mesh| u64::from(mesh.triangles()))
+        };
+        scene.instances.iter().map(of).sum()
     }
 
     /// Takes a mesh from an OBJ file, as [`MeshData::load_obj`] reads it.

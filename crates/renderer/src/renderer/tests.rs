@@ -4,7 +4,7 @@ use glam::{Mat4, Vec3};
 use image::{Rgba, RgbaImage};
 
 use super::*;
-use crate::scene::{Instance, Light, LightSource, Material, MeshId, TextureId};
+use crate::scene::{Instance, Light, LightSource, Material, MeshId, Occluder, TextureId};
 use crate::{BackendChoice, Fov, MeshData};
 
 fn renderer(settings: RendererSettings) -> Renderer {
@@ -39,36 +39,99 @@ fn sun() -> Light {
 /// Every pipeline, layout and bind group is checked by the validation of a device that draws nothing.
 #[test]
 fn every_pass_validates_on_a_device_without_pixels() {
-    for (shadow_size, light) in [(0, None), (0, Some(sun())), (256, Some(sun())), (256, None)] {
-        for samples in [1, 4] {
-            let mut renderer = renderer(RendererSettings {
-                samples,
-                shadow_size,
-            });
-            let mesh = renderer.add_mesh(&MeshData::quad(1.0, 1.0)).expect("good");
-            let scene = Scene {
-                instances: vec![instance(mesh); 100],
-                light,
-                ..Scene::default()
-            };
-            let images = renderer.render(&scene, &[view(), view()], 32, 16);
+    let lights = [(0, None), (0, Some(sun())), (256, Some(sun())), (256, None)];
+    for (index, (shadow_size, light)) in (0..).zip(lights.into_iter().cycle().take(32)) {
+        let is_on = |bit: u32| index & bit != 0;
+        let mut renderer = renderer(RendererSettings {
+            samples: if is_on(4) { 4 } else { 1 },
+            shadow_size,
+            reflection: is_on(8),
+            occlusion: is_on(16),
+            filtered: is_on(1),
+            flat: index == 31,
+        });
+        let mesh = renderer.add_mesh(&MeshData::quad(1.0, 1.0)).expect("good");
+        let scene = called_for(vec![instance(mesh); 100], light);
+        for size in [32, 48] {
+            let images = renderer.render(&scene, &[view(), view()], size, 16);
             assert_eq!(images.expect("drawn").len(), 2);
         }
     }
 }
 
-#[test]
-fn shadows_off_make_no_pass_and_no_map() {
-    let mut renderer = renderer(RendererSettings {
-        samples: 1,
-        shadow_size: 0,
-    });
-    let scene = Scene {
-        light: Some(sun()),
+/// A scene that calls for everything.
+fn called_for(mut instances: Vec<Instance>, light: Option<Light>) -> Scene {
+    for (index, instance) in instances.iter_mut().enumerate() {
+        instance.material.mirror = if index == 0 { 1.0 } else { 0.0 };
+        instance.material.is_mirrored = index > 50;
+    }
+    Scene {
+        instances,
+        light,
+        occluders: vec![Occluder {
+            position: Vec3::Y,
+            radius_m: 0.1,
+        }],
         ..Scene::default()
+    }
+}
+
+#[test]
+fn what_is_off_or_not_called_for_has_no_pass() {
+    let passes = |settings: RendererSettings, calls: bool| {
+        let mut renderer = renderer(settings);
+        let mesh = renderer.add_mesh(&MeshData::quad(1.0, 1.0)).expect("good");
+        let mut scene = called_for(vec![instance(mesh); 2], Some(sun()));
+        if !calls {
+            scene = Scene {
+                instances: vec![instance(mesh)],
+                ..Scene::default()
+            };
+        }
+        renderer.render(&scene, &[view()], 8, 8).expect("drawn");
+        renderer.passes()
     };
-    renderer.render(&scene, &[view()], 8, 8).expect("drawn");
-    assert!(renderer.shadow.is_none() && renderer.lit_shadowed.is_none());
+    let all = RendererSettings::default();
+    assert_eq!(
+        passes(all, true),
+        ["shadow", "mirror", "lit with occlusion"]
+    );
+    assert_eq!(passes(all, false), ["lit"]);
+    let no_shadows = RendererSettings {
+        shadow_size: 0,
+        ..all
+    };
+    assert_eq!(passes(no_shadows, true), ["mirror", "lit with occlusion"]);
+    let no_reflection = RendererSettings {
+        reflection: false,
+        ..all
+    };
+    assert_eq!(
+        passes(no_reflection, true),
+        ["shadow", "lit with occlusion"]
+    );
+    let no_occlusion = RendererSettings {
+        occlusion: false,
+        ..all
+    };
+    assert_eq!(passes(no_occlusion, true), ["shadow", "mirror", "lit"]);
+    let flat = RendererSettings { flat: true, ..all };
+    assert_eq!(passes(flat, true), ["flat"]);
+}
+
+#[test]
+fn a_scene_with_other_effects_draws_again_with_the_maps_of_its_size() {
+    let mut renderer = renderer(RendererSettings::default());
+    let mesh = renderer.add_mesh(&MeshData::quad(1.0, 1.0)).expect("good");
+    let rich = called_for(vec![instance(mesh); 2], Some(sun()));
+    let poor = Scene {
+        light: None,
+        ..rich.clone()
+    };
+    for (scene, size) in [(&rich, 8), (&poor, 16), (&rich, 16), (&poor, 8), (&rich, 8)] {
+        let images = renderer.render(scene, &[view()], size, size);
+        assert_eq!(images.expect("drawn").len(), 1);
+    }
 }
 
 #[test]
@@ -126,6 +189,7 @@ fn bad_settings_and_sizes_are_refused() {
             RendererSettings {
                 samples,
                 shadow_size,
+                ..RendererSettings::default()
             },
         )
     };

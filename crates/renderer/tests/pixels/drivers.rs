@@ -11,6 +11,7 @@ fn everything(gpu: &Gpu) -> Vec<RgbaImage> {
     let settings = RendererSettings {
         samples: 4,
         shadow_size: 512,
+        ..RendererSettings::FULL
     };
     let mut renderer = renderer(gpu, settings);
     let floor = add(&mut renderer, &MeshData::quad(3.0, 3.0));

@@ -9,6 +9,7 @@ use crate::support::*;
 const SHADOWED: RendererSettings = RendererSettings {
     samples: 1,
     shadow_size: 512,
+    ..RendererSettings::FULL
 };
 
 /// A matte floor of base colour 0.5 at y = 0, seen from 2 m above.

@@ -2,6 +2,8 @@
 
 /// Vulkan and GL give the same picture, and each the same picture twice.
 mod drivers;
+/// The glossy floor, hidden sky, patterns, one colour a face.
+mod effects;
 /// Lights, shadows, tone and colour.
 mod light;
 /// Where points land: fields of view, eyes, depth, edges.

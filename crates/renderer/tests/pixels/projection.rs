@@ -6,6 +6,7 @@ use crate::support::*;
 const MULTISAMPLED: RendererSettings = RendererSettings {
     samples: 4,
     shadow_size: 0,
+    ..RendererSettings::FULL
 };
 
 /// A white dot as seen by `view`, which must not be far off its axis: a small quad facing +z.
@@ -173,6 +174,7 @@ fn edge_pixels(gpu: &renderer::Gpu, samples: u32) -> usize {
         RendererSettings {
             samples,
             shadow_size: 0,
+            ..RendererSettings::FULL
         },
     );
     let quad = add(&mut renderer, &MeshData::quad(1.0, 1.0));

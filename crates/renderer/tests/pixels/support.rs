@@ -38,6 +38,7 @@ pub fn on_each_driver(test: impl Fn(&Gpu)) {
 pub const PLAIN: RendererSettings = RendererSettings {
     samples: 1,
     shadow_size: 0,
+    ..RendererSettings::FULL
 };
 
 pub fn renderer(gpu: &Gpu, settings: RendererSettings) -> Renderer {
