@@ -15,7 +15,7 @@ use bowling_app::devices::Device;
 use bowling_app::devices::script::{Script, Velocities};
 use bowling_app::thread_seconds;
 use game::{Button, Conditions, Game, Phase};
-use renderer::{BackendChoice, EyeTargets, Gpu, Renderer, RendererSettings};
+use renderer::{BackendChoice, EyeTargets, Gpu, Renderer};
 
 /// Most processor time of a frame that 99 of 100 may take [ms].
 const BUDGET_MS: f64 = 2.0;
@@ -116,7 +116,8 @@ impl Alley {
     fn open(gpu: &Gpu, size: [u32; 2]) -> Self {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         let conditions = Conditions::load(&root.join("config"), "alley", &[]).expect("as shipped");
-        let mut renderer = Renderer::new(gpu, RendererSettings::default()).expect("as shipped");
+        let mut renderer =
+            Renderer::new(gpu, convert::settings(&conditions.lobby.shows)).expect("as shipped");
         let stock = Stock::load(&mut renderer, root, &conditions.lobby).expect("as shipped");
         let games = [Button::Red, Button::Blue];
         Self {
@@ -146,8 +147,12 @@ impl Alley {
         self.game.step(&input);
         let stepped = thread_seconds();
         let visible = self.game.visible();
-        let is_holding = self.game.held().is_some();
-        let scene = convert::scene(visible.iter(), &self.stock, is_holding);
+        let scores = convert::Scores::of(&self.game);
+        self.stock
+            .show_scores(&mut self.renderer, &scores)
+            .expect("it is painted in every session");
+        let hand = convert::HandShape::of(&self.game);
+        let scene = convert::scene(visible.iter(), &self.stock, hand);
         let head = input
             .head
             .map(|head| self.game.world_from_tracking() * head.pose);

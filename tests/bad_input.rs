@@ -198,11 +198,11 @@ fn a_missing_or_malformed_mesh_is_named() {
         "{text}"
     );
     fs::write(&mesh, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("writable");
-    let texture = root.join("assets/textures/lane_boards.png");
+    let texture = root.join("assets/textures/grain.png");
     fs::write(&texture, "no picture").expect("writable");
     let text = play_refused(&root, &[]);
     assert!(
-        text.contains("lane_boards.png") && text.contains("make-assets"),
+        text.contains("grain.png") && text.contains("make-assets"),
         "{text}"
     );
 }

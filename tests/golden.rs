@@ -1,6 +1,7 @@
 use std::path::{Path, PathBuf};
 
-use bowling_app::convert::{self, Stock};
+use bowling_app::convert::{self, HandShape, Stock};
+use bowling_app::look::{Stage, places};
 use game::{Conditions, Game, Model, Visible};
 use glam::{DQuat, DVec3};
 use image::{Rgb, RgbImage, imageops};
@@ -139,7 +140,7 @@ fn draw(state: &State, settings: RendererSettings) -> [RgbImage; 2] {
     let mut renderer = Renderer::new(&gpu, settings).expect("plain settings");
     let stock =
         Stock::load(&mut renderer, root, &conditions().lobby).expect("the project's assets");
-    let scene = convert::scene(&state.visible, &stock, false);
+    let scene = convert::scene(&state.visible, &stock, HandShape::Closing(0.0));
     let display = &conditions().lobby.display;
     let eyes = match state.head {
         Some(head) => convert::eyes(&head, display),
@@ -234,7 +235,7 @@ fn pictures_agree_with_their_references() {
     let kept = fresh_folder("golden");
     let mut problems = Vec::new();
     for state in states() {
-        let eyes = draw(&state, RendererSettings::default());
+        let eyes = draw(&state, RendererSettings::FULL);
         for (eye, image) in ["left", "right"].into_iter().zip(&eyes) {
             problems.extend(check(state.name, eye, image, &kept).err());
         }
@@ -245,7 +246,7 @@ fn pictures_agree_with_their_references() {
 /// What the references are for: each of these mistakes must be seen in every picture.
 #[test]
 fn swapped_eyes_a_missing_shadow_and_a_mirrored_lane_are_all_seen() {
-    let plain = RendererSettings::default();
+    let plain = RendererSettings::FULL;
     for state in states() {
         let [left, right] = draw(&state, plain);
         assert!(agrees(&left, &left));
@@ -274,6 +275,68 @@ fn swapped_eyes_a_missing_shadow_and_a_mirrored_lane_are_all_seen() {
             state.name
         );
     }
+}
+
+/// Each thing that a scene may show, the place from which it is seen, and the setting that leaves it out.
+const EFFECTS: [(&str, &str, &str); 8] = [
+    ("shadows", "desk", "shows.shadows=false"),
+    ("reflection", "foul line", "shows.reflection=false"),
+    ("ambient-occlusion", "hall", "shows.ambient_occlusion=false"),
+    (
+        "neighbouring-lanes",
+        "start",
+        "shows.neighbouring_lanes=false",
+    ),
+    ("furnishings", "hall", "shows.furnishings=false"),
+    ("materials", "ball return", "shows.materials=false"),
+    ("smooth-edges", "pins", "shows.smooth_edges=false"),
+    ("low-polygon", "ball return", "shows.low_polygon=true"),
+];
+
+/// The left eye's picture of a scene from a place.
+fn seen(gpu: &Gpu, scene: &str, place: &str, settings: &[String]) -> RgbImage {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut stage = Stage::open(gpu, root, scene, settings).expect("a shipped scene");
+    let all = places(&stage.config);
+    let place = all.iter().find(|one| one.name == place).expect("a place");
+    let [left, _] = place.eyes(&stage.config.display, 4.0 / 3.0);
+    let scene = place.scene(&stage.room, &stage.stock);
+    let mut images = stage
+        .renderer
+        .render(&scene, &[left], 200, 150)
+        .expect("drawn");
+    let image = images.pop().expect("one view");
+    image::DynamicImage::ImageRgba8(image).to_rgb8()
+}
+
+#[test]
+fn every_effect_agrees_with_its_references_on_and_off() {
+    let kept = fresh_folder("golden-effects");
+    let gpu =
+        Gpu::new(BackendChoice::Auto).expect("a graphics driver: install mesa-vulkan-drivers");
+    let mut problems = Vec::new();
+    let mut check_one = |name: &str, image: &RgbImage| {
+        problems.extend(check(name, "left", image, &kept).err());
+    };
+    let mut usual: Vec<(&str, RgbImage)> = Vec::new();
+    for place in ["start", "foul line", "pins", "ball return", "desk", "hall"] {
+        let image = seen(&gpu, "alley", place, &[]);
+        check_one(&format!("alley-{}", place.replace(' ', "-")), &image);
+        usual.push((place, image));
+    }
+    for (effect, place, setting) in EFFECTS {
+        let image = seen(&gpu, "alley", place, &[setting.to_owned()]);
+        check_one(&format!("without-{effect}"), &image);
+        let (_, with) = usual
+            .iter()
+            .find(|(name, _)| *name == place)
+            .expect("drawn");
+        assert!(!agrees(with, &image), "{effect}: on and off look the same");
+    }
+    for scene in ["plain-1996", "test"] {
+        check_one(&format!("{scene}-start"), &seen(&gpu, scene, "start", &[]));
+    }
+    assert!(problems.is_empty(), "{}", problems.join("\n"));
 }
 
 #[test]

@@ -22,6 +22,8 @@ mod query;
 mod recording;
 /// The release velocity comes out of the poses as it does out of measured velocities.
 mod release;
+/// What each scene shows, what that costs, and that the distance does not flicker.
+mod scenes;
 /// Throws without hands, one and many.
 mod shot;
 /// What a throw sounds like.

@@ -137,6 +137,11 @@ pub enum Command {
     /// every effect how often it acts in a step, its share of the step's time, and the time with and
     /// without it.
     Effects(EffectsArguments),
+    /// Draw a scene from six places, for both eyes.
+    ///
+    /// Writes a contact sheet and prints how many triangles the scene has, which passes draw it, and how long a picture
+    /// of both eyes takes.
+    Look(LookArguments),
     /// Show what accuracy costs in time, dial by dial.
     ///
     /// Prints a table per dial (iteration cap, shape, step, solver, response, precision, four public scenes) and writes
@@ -332,6 +337,26 @@ pub struct EffectsArguments {
     /// Scene: a file of config/scenes, without its ending.
     #[arg(long, value_name = "NAME", default_value = "alley")]
     pub scene: String,
+
+    /// Change one setting, as in `bowling play`; may be given several times.
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub settings: Vec<String>,
+}
+
+/// Arguments of `bowling look`.
+#[derive(Debug, Args)]
+pub struct LookArguments {
+    /// Scene: a file of config/scenes, without its ending.
+    #[arg(long, value_name = "NAME", default_value = "alley")]
+    pub scene: String,
+
+    /// The contact sheet.
+    #[arg(long, value_name = "FILE", default_value = "look.png")]
+    pub out: PathBuf,
+
+    /// Width of one eye's picture, in pixels; it is three quarters as high.
+    #[arg(long, value_name = "PX", default_value_t = 480, value_parser = clap::value_parser!(u32).range(64..=2048))]
+    pub width: u32,
 
     /// Change one setting, as in `bowling play`; may be given several times.
     #[arg(long = "set", value_name = "KEY=VALUE")]

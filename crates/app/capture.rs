@@ -130,7 +130,8 @@ impl Shots {
             time: game.time(),
             head: game.head_pose_world(),
             moving,
-            hand_is_closed: game.held().is_some(),
+            hand: convert::HandShape::of(game),
+            scores: std::sync::Arc::new(convert::Scores::of(game)),
         });
     }
 }

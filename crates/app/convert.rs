@@ -1,93 +1,148 @@
 //! From the game's things to the renderer's: models to meshes and materials, a head to two eyes.
 
+mod board;
 mod eyes;
 mod light;
+mod shape;
 mod stock;
 
-use game::{Model, Visible};
+use game::{Model, Visible, hand_on_ball};
 use glam::{DQuat, Mat4, Quat, Vec3};
 use physics::Pose;
-use renderer::{Instance, Material, Scene};
+use renderer::{Instance, MAX_OCCLUDERS, Material, Occluder, Scene};
 
+pub use board::Scores;
 pub use eyes::{bird, eyes, spectator, spectator_eyes};
-pub use stock::Stock;
+pub use shape::HandShape;
+pub use stock::{Stock, settings};
 
-use stock::{Piece, box_material};
+use crate::scenery::hand::PALM;
+use stock::box_material;
 
-/// The scene of these things; the hand is drawn closed while it holds something.
+/// The scene of these things, with the hand in its shape.
 pub fn scene<'a>(
     visible: impl IntoIterator<Item = &'a Visible>,
     stock: &Stock,
-    hand_is_closed: bool,
+    hand: HandShape,
 ) -> Scene {
-    let mut instances: Vec<Instance> = stock
-        .scenery
-        .iter()
-        .map(|piece| Instance {
-            mesh: piece.mesh,
-            material: piece.material,
-            world_from_mesh: Mat4::IDENTITY,
-        })
-        .collect();
-    instances.extend(
-        visible
-            .into_iter()
-            .filter_map(|visible| instance(visible, stock, hand_is_closed)),
-    );
+    let visible: Vec<Visible> = visible.into_iter().copied().collect();
+    let mut instances = stock.scenery.clone();
+    for thing in &visible {
+        match thing.model {
+            Model::Hand => instances.push(hand_instance(thing, &visible, stock, hand)),
+            _ => add_thing(&mut instances, thing, stock),
+        }
+    }
     Scene {
         instances,
-        light: Some(stock.light),
+        light: stock.light,
         lamps: stock.lamps.clone(),
+        occluders: occluders(&visible, stock),
+        enclosure: stock.enclosure,
         ..Scene::default()
     }
 }
 
-/// A hand at a share of its size, from 0 to 1.
-pub fn shrunk_hand(hand: &Visible, stock: &Stock, is_closed: bool, share: f64) -> Option<Instance> {
-    let mut instance = instance(hand, stock, is_closed)?;
+/// A hand at a share of its size, from 0 to 1; where it holds nothing, its place is its own.
+pub fn shrunk_hand(hand: &Visible, stock: &Stock, shape: HandShape, share: f64) -> Instance {
+    let mut instance = hand_instance(hand, &[], stock, shape);
     instance.world_from_mesh *= Mat4::from_scale(Vec3::splat(share as f32));
-    Some(instance)
+    instance
 }
 
-/// One thing; `None` for what the scenery shows already.
-fn instance(visible: &Visible, stock: &Stock, hand_is_closed: bool) -> Option<Instance> {
-    let (piece, piece_scale) = piece(visible, stock, hand_is_closed)?;
-    let origin = match visible.model {
-        // The mesh stands on its origin, the model has its origin in its middle.
-        Model::RedButton | Model::BlueButton => Vec3::new(0.0, -0.5, 0.0),
-        _ => Vec3::ZERO,
+/// A hand that holds a ball lies on it, whatever place within reach it took it from.
+fn hand_instance(thing: &Visible, all: &[Visible], stock: &Stock, shape: HandShape) -> Instance {
+    let ball = shape
+        .held_ball()
+        .and_then(|model| all.iter().find(|other| other.model == model));
+    let hands = &stock.hands;
+    let (mesh, pose) = match (shape, ball) {
+        (_, Some(ball)) => {
+            let (centre, radius) = (ball.pose.position, 0.5 * ball.size.x);
+            let pose = hand_on_ball(&thing.pose, centre, radius, f64::from(PALM));
+            (hands.gripping, pose)
+        }
+        (HandShape::Pointing, None) => (hands.pointing, thing.pose),
+        (HandShape::Closing(closed), None) => {
+            let last = hands.closing.len() - 1;
+            let step = (closed.clamp(0.0, 1.0) * last as f64).round() as usize;
+            (hands.closing[step], thing.pose)
+        }
+        (HandShape::Holding(_), None) => (hands.closing[hands.closing.len() - 1], thing.pose),
     };
-    Some(Instance {
-        mesh: piece.mesh,
-        material: highlighted(piece.material, visible),
-        world_from_mesh: world_from(&visible.pose, piece_scale) * Mat4::from_translation(origin),
-    })
+    Instance {
+        mesh,
+        material: hands.skin,
+        world_from_mesh: world_from(&pose, Vec3::ONE),
+    }
 }
 
-/// Mesh and look of a thing, and what its mesh is scaled by.
-fn piece(visible: &Visible, stock: &Stock, hand_is_closed: bool) -> Option<(Piece, Vec3)> {
-    let size = visible.size.as_vec3();
-    Some(match visible.model {
+/// Nothing for what the scenery shows already.
+fn add_thing(instances: &mut Vec<Instance>, thing: &Visible, stock: &Stock) {
+    let size = thing.size.as_vec3();
+    let mut add = |mesh, material, scale, origin| {
+        instances.push(Instance {
+            mesh,
+            material: highlighted(material, thing),
+            world_from_mesh: world_from(&thing.pose, scale) * Mat4::from_translation(origin),
+        });
+    };
+    match thing.model {
         // Of a pin, the shape that collides may be an ellipsoid; what is seen stays a pin, or the eye
         // would tell the conditions apart before anything has moved.
-        Model::Pin(_) => (stock.pin, Vec3::ONE),
+        Model::Pin(_) => {
+            for piece in &stock.pin {
+                add(piece.mesh, piece.material, Vec3::ONE, Vec3::ZERO);
+            }
+        }
         Model::Ball(number) => {
-            let ball = Piece {
-                mesh: stock.ball,
-                material: stock.balls[usize::from(number) % stock.balls.len()],
-            };
-            (ball, 0.5 * size)
+            let material = stock.balls[usize::from(number) % stock.balls.len()];
+            add(stock.ball, material, 0.5 * size, Vec3::ZERO);
+            if let Some(holes) = &stock.ball_holes {
+                add(holes.mesh, holes.material, 0.5 * size, Vec3::ZERO);
+            }
         }
-        Model::Hand if hand_is_closed => (stock.hand_closed, Vec3::ONE),
-        Model::Hand => (stock.hand_open, Vec3::ONE),
-        Model::RedButton => (stock.buttons[0], size * BUTTON_SCALE),
-        Model::BlueButton => (stock.buttons[1], size * BUTTON_SCALE),
+        Model::RedButton | Model::BlueButton => {
+            let button = &stock.buttons[usize::from(thing.model == Model::BlueButton)];
+            // The mesh stands on its origin, the model has its origin in its middle.
+            let origin = Vec3::new(0.0, -0.5, 0.0);
+            add(button.mesh, button.material, size * BUTTON_SCALE, origin);
+        }
         model => {
-            let material = box_material(model)?;
-            let mesh = stock.cuboid;
-            (Piece { mesh, material }, 0.5 * size)
+            if let Some(material) = box_material(model) {
+                add(stock.cuboid, material, 0.5 * size, Vec3::ZERO);
+            }
         }
-    })
+    }
+}
+
+/// Height of the middle and radius of the balls that stand for a pin when it hides the sky [m].
+const PIN_BALLS: [(f64, f32); 2] = [(0.055, 0.045), (0.115, 0.06)];
+
+/// What hides the sky: balls, and pins as two balls each, the first as many as a scene may have.
+fn occluders(visible: &[Visible], stock: &Stock) -> Vec<Occluder> {
+    let mut occluders = Vec::new();
+    if !stock.shows.ambient_occlusion {
+        return occluders;
+    }
+    for thing in visible {
+        match thing.model {
+            Model::Ball(_) => occluders.push(Occluder {
+                position: thing.pose.position.as_vec3(),
+                radius_m: 0.5 * thing.size.x as f32,
+            }),
+            Model::Pin(_) => occluders.extend(PIN_BALLS.map(|(height, radius_m)| {
+                let at = thing.pose.transform_point(glam::DVec3::Y * height);
+                Occluder {
+                    position: at.as_vec3(),
+                    radius_m,
+                }
+            })),
+            _ => {}
+        }
+    }
+    occluders.truncate(MAX_OCCLUDERS);
+    occluders
 }
 
 /// From the full extents of a button to its mesh, of radius 1 and height 1.
@@ -156,9 +211,8 @@ pub(crate) mod tests {
         let (meshes, textures) = (folder("meshes"), folder("textures"));
         let others = [
             "pin",
+            "pin_low",
             "ball",
-            "hand_open",
-            "hand_closed",
             "button_round",
             "button_square",
             "box",
@@ -167,10 +221,7 @@ pub(crate) mod tests {
             let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
             std::fs::write(meshes.join(format!("{name}.obj")), triangle).expect("writable");
         }
-        for name in BALL_TEXTURES
-            .iter()
-            .chain(&["pin", "lane_boards", "approach_boards"])
-        {
+        for name in BALL_TEXTURES.iter().chain(&["pin", "grain", "masking"]) {
             let pixel = renderer::RgbaImage::new(1, 1);
             pixel
                 .save(textures.join(format!("{name}.png")))
@@ -186,7 +237,9 @@ pub(crate) mod tests {
     fn instance_scales_meshes_to_the_size_that_is_seen() {
         let stock = stock();
         let extent = |model, size: DVec3, corner: Vec3| {
-            let instance = instance(&visible(model, size), &stock, false).expect("it is drawn");
+            let mut instances = Vec::new();
+            add_thing(&mut instances, &visible(model, size), &stock);
+            let instance = instances.first().expect("it is drawn");
             instance.world_from_mesh.transform_point3(corner) - Vec3::new(1.0, 2.0, -3.0)
         };
         let ball = extent(Model::Ball(0), DVec3::splat(0.2), Vec3::X);
@@ -198,16 +251,38 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn scene_shows_the_hand_open_or_closed_and_no_lane_twice() {
+    fn scene_shows_the_hand_in_its_shape_and_no_lane_twice() {
         let stock = stock();
         let things = [
             visible(Model::Hand, DVec3::ONE),
             visible(Model::Lane, DVec3::ONE),
         ];
-        let open = scene(&things, &stock, false);
-        let closed = scene(&things, &stock, true);
-        assert_eq!(open.instances.len(), stock.scenery.len() + 1);
-        let last = |scene: &Scene| scene.instances.last().expect("the hand").mesh;
-        assert_ne!(last(&open), last(&closed));
+        let last = |shape| {
+            let scene = scene(&things, &stock, shape);
+            assert_eq!(scene.instances.len(), stock.scenery.len() + 1);
+            *scene.instances.last().expect("the hand")
+        };
+        let open = last(HandShape::Closing(0.0));
+        assert_ne!(open.mesh, last(HandShape::Closing(0.3)).mesh);
+        assert_ne!(open.mesh, last(HandShape::Pointing).mesh);
+        assert_eq!(
+            open.world_from_mesh,
+            last(HandShape::Pointing).world_from_mesh
+        );
+    }
+
+    #[test]
+    fn a_hand_that_holds_a_ball_lies_on_it() {
+        let stock = stock();
+        let hand = visible(Model::Hand, DVec3::ONE);
+        let mut ball = visible(Model::Ball(1), DVec3::splat(0.217));
+        ball.pose.position -= DVec3::new(0.0, 0.2, 0.0);
+        let shape = HandShape::Holding(Model::Ball(1));
+        let scene = scene(&[hand, ball], &stock, shape);
+        let drawn = &scene.instances[stock.scenery.len()];
+        assert_eq!(drawn.mesh, stock.hands.gripping);
+        let palm = drawn.world_from_mesh.transform_point3(Vec3::ZERO);
+        let away = palm.distance(ball.pose.position.as_vec3());
+        assert!((away - 0.1085 - PALM).abs() < 1e-5, "{away}");
     }
 }

@@ -23,8 +23,8 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result};
 use experiment::protocol::AnsweredIn;
 use game::{Button, Config, Event, EventKind};
+use renderer::Renderer;
 use renderer::headset::{HeadsetError, HeadsetSession, HeadsetSettings, Note};
-use renderer::{Renderer, RendererSettings};
 use serde_json::json;
 
 use crate::convert::{self, Stock};
@@ -146,7 +146,7 @@ struct Stage {
 impl Stage {
     fn open(settings: HeadsetSettings, root: &Path, config: &Config) -> Result<Self> {
         let headset = HeadsetSession::open(settings)?;
-        let mut renderer = Renderer::new(headset.gpu(), RendererSettings::default())
+        let mut renderer = Renderer::new(headset.gpu(), convert::settings(&config.shows))
             .context("cannot draw for the headset")?;
         let stock = Stock::load(&mut renderer, root, config)?;
         let panel = PanelStock::new(headset.gpu(), &mut renderer)?;
@@ -303,12 +303,14 @@ impl Player {
             ears.notice(game);
             ears.hear(game);
             let visible = game.visible_at(participant.share());
-            let is_holding = game.held().is_some();
-            let mut scene = convert::scene(visible.iter(), &stage.stock, is_holding);
+            let scores = convert::Scores::of(game);
+            stage.stock.show_scores(&mut stage.renderer, &scores)?;
+            let hand_shape = convert::HandShape::of(game);
+            let mut scene = convert::scene(visible.iter(), &stage.stock, hand_shape);
             if is_here {
                 let faded = fading.of(&visible, at);
-                scene.instances.extend(faded.and_then(|(hand, share)| {
-                    convert::shrunk_hand(&hand, &stage.stock, is_holding, share)
+                scene.instances.extend(faded.map(|(hand, share)| {
+                    convert::shrunk_hand(&hand, &stage.stock, hand_shape, share)
                 }));
             } else {
                 fading.forget();

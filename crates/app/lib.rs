@@ -1,7 +1,7 @@
 //! The `bowling` program: who bowls, what is recorded, what is drawn.
 //!
 //! Entry points: [`run`] reads the command line; [`play`], [`replay`], [`query`], [`hard_cases`],
-//! [`shot`], [`strike_map`], [`effects`](mod@effects), [`accuracy`](mod@accuracy) and [`compare`] are the commands; a [`session::Session`] takes one input per displayed frame from any device.
+//! [`shot`], [`strike_map`], [`effects`](mod@effects), [`look`](mod@look), [`accuracy`](mod@accuracy) and [`compare`] are the commands; a [`session::Session`] takes one input per displayed frame from any device.
 
 pub mod accuracy;
 pub mod analyse;
@@ -16,6 +16,7 @@ pub mod effects;
 pub mod hard_cases;
 pub mod headset;
 pub mod journal;
+pub mod look;
 pub mod motion;
 pub mod output;
 pub mod panel;
@@ -88,6 +89,7 @@ fn obey(arguments: &Arguments) -> Result<()> {
         Some(Command::Effects(effects)) => {
             effects::effects(effects, &root::find(arguments.root.as_deref())?)
         }
+        Some(Command::Look(look)) => look::look(look, &root::find(arguments.root.as_deref())?),
         Some(Command::Accuracy(accuracy)) => {
             accuracy::accuracy(accuracy, &root::find(arguments.root.as_deref())?)
         }

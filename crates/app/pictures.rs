@@ -14,9 +14,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use anyhow::{Context, Result, bail};
 use game::{Config, DisplayConfig, DisplayProfile, Visible};
 use image::RgbaImage;
-use renderer::{
-    BackendChoice, Gpu, Renderer, RendererSettings, TextBlock, TextPainter, View, relay,
-};
+use renderer::{BackendChoice, Gpu, Renderer, TextBlock, TextPainter, View, relay};
 
 use self::album::Album;
 use self::film::{Film, Shot};
@@ -66,7 +64,7 @@ impl Painter {
     pub fn new(root: &Path, config: &Config) -> Result<Self> {
         let gpu = Gpu::new(BackendChoice::Auto).context("cannot draw")?;
         let mut renderer =
-            Renderer::new(&gpu, RendererSettings::default()).context("cannot draw")?;
+            Renderer::new(&gpu, convert::settings(&config.shows)).context("cannot draw")?;
         let stock = Stock::load(&mut renderer, root, config)?;
         let text = TextPainter::new(&gpu);
         Ok(Painter {
@@ -182,8 +180,9 @@ impl Painter {
         if self.is_stopped() {
             bail!("the drawing was interrupted");
         }
+        self.stock.show_scores(&mut self.renderer, &shot.scores)?;
         let visible = still.iter().chain(&shot.moving);
-        let scene = convert::scene(visible, &self.stock, shot.hand_is_closed);
+        let scene = convert::scene(visible, &self.stock, shot.hand);
         Ok(self.renderer.render(&scene, views, size.0, size.1)?)
     }
 

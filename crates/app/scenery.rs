@@ -3,18 +3,18 @@
 //! The settings move the physics, so they make the pictures too. What the physics has as plain boxes (rack, desk, kickbacks,
 //! foul line) is drawn as those boxes; here is what is round, painted, or only looked at.
 
+mod furnishings;
+pub mod hand;
 mod lane;
 mod markings;
 pub mod mesh;
+mod neighbours;
 mod room;
 
 use game::Config;
 use glam::{Affine3A, Vec2, Vec3};
 
 use mesh::{Mesh, cuboid};
-
-/// Boards that the two textures of boards show side by side.
-pub const BOARDS_IN_IMAGE: u32 = 39;
 
 /// Markings lie this far above the boards [m]: enough for a depth buffer at 20 m, too little to see from the side.
 const DECAL: f32 = 0.0012;
@@ -40,8 +40,14 @@ struct Plan {
     /// Front of the panel that hides the pinsetter, and its lower edge.
     masking: f32,
     masking_bottom: f32,
-    /// How often the image of boards fits across the lane.
-    images_across: f32,
+    /// Width of a board.
+    board: f32,
+    /// From one lane's middle to the next, and the middles of the neighbours.
+    pitch: f32,
+    neighbours: Vec<f32>,
+    /// Corners are left out where they only make things look rounder.
+    is_low: bool,
+    has_furnishings: bool,
 }
 
 impl Plan {
@@ -68,13 +74,38 @@ impl Plan {
             ceiling,
             masking: headpin + c.kickback.starts_before_headpin_m as f32 + 0.25,
             masking_bottom: (c.kickback.height_m as f32 + 0.35).min(ceiling - 0.1),
-            images_across: c.lane.boards as f32 / BOARDS_IN_IMAGE as f32,
+            board: c.lane.width_m as f32 / c.lane.boards as f32,
+            pitch: c.room.lane_pitch_m as f32,
+            neighbours: neighbours::middles(c),
+            is_low: c.shows.low_polygon,
+            has_furnishings: c.shows.furnishings,
         }
     }
 
-    /// Half of the approach's width [m].
+    /// Half of the approach's width [m]: it runs behind all lanes.
     fn approach_half(&self) -> f32 {
-        (self.edge + 0.35).min(self.half_room)
+        if self.neighbours.is_empty() {
+            (self.edge + 0.35).min(self.half_room)
+        } else {
+            self.half_room
+        }
+    }
+
+    /// Where the outermost lane ends at the right: the outer edge of its gutter.
+    fn lanes_end(&self) -> f32 {
+        self.neighbours.iter().fold(0.0, |far, x| x.max(far)) + self.edge
+    }
+
+    /// The strips between lanes and out to the walls, at the right of the middle, as (from, to).
+    fn between_lanes(&self) -> Vec<(f32, f32)> {
+        let mut strips: Vec<_> = self
+            .neighbours
+            .iter()
+            .filter(|x| **x > 0.0)
+            .map(|x| (x - self.pitch + self.edge, x - self.edge))
+            .collect();
+        strips.push((self.lanes_end(), self.half_room));
+        strips
     }
 }
 
@@ -97,14 +128,30 @@ pub enum Surface {
     Masking,
     /// The floor beside and behind the approach.
     Floor,
-    /// The three walls that are seen.
+    /// The three walls that are seen, above their panelling.
     Walls,
+    /// The panelling.
+    Wainscot,
     /// The ceiling.
     Ceiling,
     /// The luminous panels on it.
     Lamps,
     /// The stand of the ball rack.
     RackStand,
+    /// The kickbacks of the neighbouring lanes.
+    Kickbacks,
+    /// The foul lines of the neighbouring lanes.
+    FoulLines,
+    /// Upholstery of the seats.
+    Seats,
+    /// Metal legs, tubes and brackets.
+    Metal,
+    /// The cases of the screens.
+    Cases,
+    /// The screens of the neighbouring lanes, on which nobody plays.
+    IdleScreens,
+    /// The screen over the own lane, with both score sheets; its texture fills it once.
+    Scoreboard,
 }
 
 /// The scenery that `config` describes, in the world frame; a surface that has no area under it is left out.
@@ -117,16 +164,25 @@ pub fn meshes(config: &Config) -> Vec<(Surface, Mesh)> {
         (Surface::Gutters, lane::gutters(&plan, config)),
         (Surface::Capping, lane::capping(&plan)),
         (Surface::Pit, lane::pit(&plan, config)),
+        (Surface::Pit, lane::housing(&plan, config)),
         (Surface::Masking, room::masking(&plan)),
         (Surface::Floor, room::floor(&plan)),
         (Surface::Walls, room::walls(&plan)),
         (Surface::Ceiling, room::ceiling(&plan)),
         (Surface::Lamps, room::lamps(&plan)),
+        (Surface::Wainscot, room::wainscot(&plan)),
         (Surface::RackStand, room::rack_stand(config)),
     ];
+    if plan.has_furnishings {
+        meshes.extend(furnishings::meshes(&plan));
+    }
     meshes.retain(|(_, mesh)| !mesh.triangles.is_empty());
     meshes
 }
+
+pub use furnishings::{HouseBall, house_balls};
+pub use markings::pin_spots;
+pub use neighbours::{meshes as neighbour_meshes, middles as neighbour_middles};
 
 /// A horizontal face from `low` to `high` (x, z) at height `y`, seen from above; texture in `uv` along x and -z. Nothing where
 /// there is no area.

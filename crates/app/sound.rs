@@ -46,7 +46,7 @@ fn material(model: Model) -> Material {
         Model::Pit => Material::Pit,
         Model::Cushion => Material::Cushion,
         Model::SideFloor | Model::Wall | Model::Ceiling => Material::Wall,
-        Model::Rack | Model::SweepBar => Material::Metal,
+        Model::Rack | Model::SweepBar | Model::SettingTable => Material::Metal,
         Model::Desk => Material::Desk,
     }
 }

@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result, anyhow};
 use experiment::protocol::AnsweredIn;
 use glam::{DQuat, DVec3};
-use renderer::{BackendChoice, Fov, Renderer, RendererSettings, TextPainter, View, WindowTarget};
+use renderer::{BackendChoice, Fov, Renderer, TextPainter, View, WindowTarget};
 use winit::application::ApplicationHandler;
 use winit::dpi::LogicalSize;
 use winit::event::WindowEvent;
@@ -173,8 +173,8 @@ impl Shell {
             .context("cannot open a window; use --offscreen")?;
         let (gpu, target) = WindowTarget::new(Arc::new(window), BackendChoice::Auto)
             .context("cannot draw into the window")?;
-        let mut renderer =
-            Renderer::new(&gpu, RendererSettings::default()).context("cannot draw")?;
+        let mut renderer = Renderer::new(&gpu, convert::settings(&setup.conditions.lobby.shows))
+            .context("cannot draw")?;
         let stock = Stock::load(&mut renderer, &self.root, &setup.conditions.lobby)?;
         let overlay = Overlay::new(TextPainter::new(&gpu));
         let panel_stock = PanelStock::new(&gpu, &mut renderer)?;
@@ -296,7 +296,9 @@ impl Stage {
     fn draw(&mut self) -> Result<()> {
         let game = self.session.game();
         let visible = game.visible();
-        let mut scene = convert::scene(visible.iter(), &self.stock, game.held().is_some());
+        self.stock
+            .show_scores(&mut self.renderer, &convert::Scores::of(game))?;
+        let mut scene = convert::scene(visible.iter(), &self.stock, convert::HandShape::of(game));
         let panel = self
             .panel_stock
             .instances(&self.panel, &mut self.renderer)?;

@@ -42,8 +42,8 @@ pub(super) fn lamps(config: &Config) -> Vec<Lamp> {
     };
     // Well in front of the masking panel, which it would bleach from nearby.
     let over_pins = Lamp {
-        position: Vec3::new(0.0, 1.6, (headpin + 2.088) as f32),
-        color: [1.3, 1.28, 1.2],
+        position: Vec3::new(0.0, 1.6, (headpin + 1.788) as f32),
+        color: [2.0, 1.96, 1.85],
         range_m: 5.0,
     };
     // A fifth and half of the way to the pins.
@@ -79,6 +79,6 @@ mod tests {
         assert_eq!(box_of(&default), expected);
         assert_eq!(box_of(&short)[0], Vec3::new(-2.1, -0.2, -13.0));
         let over_pins = |config: &Config| lamps(config)[3].position.z;
-        assert_eq!((over_pins(&default), over_pins(&short)), (-16.2, -8.2));
+        assert_eq!((over_pins(&default), over_pins(&short)), (-16.5, -8.5));
     }
 }

@@ -1,17 +1,29 @@
 //! Everything that is drawn, with its looks: files from `assets/`, and scenery from the settings.
 
+mod looks;
+
 use std::path::Path;
 
 use anyhow::{Result, anyhow};
-use game::{Config, Model};
-use renderer::{Lamp, Light, Material, MeshId, RenderError, Renderer, TextureId};
+use game::{Config, Model, ShowsConfig};
+use glam::{Affine3A, Mat4, Quat, Vec3};
+use renderer::{
+    Enclosure, Instance, Lamp, Light, Material, MeshId, RenderError, Renderer, RendererSettings,
+    TextureId,
+};
 
+use super::board::{Board, Scores};
 use super::light::{lamps, light};
-use crate::scenery::{self, Surface};
+use crate::scenery::hand::{Fingers, hand};
+use crate::scenery::{self, mesh};
+use looks::{Looks, plain};
 
 /// Balls of the rack in their order; later ones begin again.
 pub(super) const BALL_TEXTURES: [&str; 4] =
     ["ball_blue", "ball_green", "ball_orange", "ball_violet"];
+
+/// Steps in which a hand is drawn from open to closed: finer than a finger moves between two pictures.
+const CLOSING_STEPS: usize = 8;
 
 /// A mesh and its look.
 #[derive(Debug, Clone, Copy)]
@@ -20,21 +32,58 @@ pub(super) struct Piece {
     pub material: Material,
 }
 
+impl Piece {
+    fn at(&self, world_from_mesh: Mat4) -> Instance {
+        Instance {
+            mesh: self.mesh,
+            material: self.material,
+            world_from_mesh,
+        }
+    }
+}
+
+/// The hand in its poses.
+#[derive(Debug)]
+pub(super) struct Hands {
+    /// From open to closed.
+    pub closing: Vec<MeshId>,
+    pub pointing: MeshId,
+    pub gripping: MeshId,
+    pub skin: Material,
+}
+
 /// Everything that is drawn, held by a renderer.
 #[derive(Debug)]
 pub struct Stock {
-    /// Drawn where it was made, in the world frame.
-    pub(super) scenery: Vec<Piece>,
-    pub(super) pin: Piece,
+    /// What never moves, where it is.
+    pub(super) scenery: Vec<Instance>,
+    /// A pin, and the bands of one that has no texture.
+    pub(super) pin: Vec<Piece>,
     pub(super) ball: MeshId,
     pub(super) balls: Vec<Material>,
-    pub(super) hand_open: Piece,
-    pub(super) hand_closed: Piece,
+    /// The holes of a ball that has no texture.
+    pub(super) ball_holes: Option<Piece>,
+    pub(super) hands: Hands,
     /// Round for Red, square for Blue: told apart without colours.
     pub(super) buttons: [Piece; 2],
     pub(super) cuboid: MeshId,
-    pub(super) light: Light,
+    pub(super) light: Option<Light>,
     pub(super) lamps: Vec<Lamp>,
+    pub(super) enclosure: Option<Enclosure>,
+    pub(super) shows: ShowsConfig,
+    board: Option<Board>,
+}
+
+/// What a renderer has to be able to do for a scene.
+pub fn settings(shows: &ShowsConfig) -> RendererSettings {
+    RendererSettings {
+        samples: if shows.smooth_edges { 4 } else { 1 },
+        shadow_size: if shows.shadows { 2048 } else { 0 },
+        reflection: shows.reflection,
+        occlusion: shows.ambient_occlusion,
+        filtered: shows.smooth_edges,
+        flat: !shows.materials,
+    }
 }
 
 impl Stock {
@@ -43,37 +92,74 @@ impl Stock {
     /// # Errors
     /// A sentence with the file, and the line of a malformed mesh.
     pub fn load(renderer: &mut Renderer, root: &Path, config: &Config) -> Result<Self> {
-        let mut assets = Assets { renderer, root };
-        let boards = assets.texture("lane_boards")?;
-        let approach = assets.texture("approach_boards")?;
-        let mut scenery = Vec::new();
-        for (surface, mesh) in scenery::meshes(config) {
-            scenery.push(Piece {
-                mesh: assets.renderer.add_mesh(&mesh.to_data())?,
-                material: surface_material(surface, boards, approach),
-            });
-        }
-        let mut balls = Vec::new();
-        for name in BALL_TEXTURES {
-            balls.push(textured(assets.texture(name)?, 1.0, 0.18));
-        }
-        let pin = textured(assets.texture("pin")?, 0.92, 0.25);
-        let skin = plain([0.62, 0.40, 0.29], 0.6);
+        let shows = &config.shows;
+        let gpu = renderer.gpu().clone();
+        let board = shows
+            .furnishings
+            .then(|| Board::new(renderer, &gpu))
+            .transpose()?;
+        let mut assets = Assets {
+            renderer,
+            root,
+            shows,
+        };
+        let looks = Looks::load(&mut assets, board.as_ref().map(Board::texture))?;
+        let pin = assets.pin(&looks)?;
+        let ball = assets.ball()?;
+        let balls = assets.balls()?;
+        let mut scenery = assets.scenery(config, &looks)?;
+        let neighbours = assets.neighbours(config, &looks, &pin, &mut scenery)?;
+        let house = assets.house_balls(config, &balls)?;
+        scenery.extend(neighbours.into_iter().chain(house));
         Ok(Stock {
             scenery,
-            pin: assets.piece("pin", pin)?,
-            ball: assets.mesh("ball")?,
+            pin,
+            ball,
             balls,
-            hand_open: assets.piece("hand_open", skin)?,
-            hand_closed: assets.piece("hand_closed", skin)?,
+            ball_holes: assets.ball_holes()?,
+            hands: assets.hands()?,
             buttons: [
                 assets.piece("button_round", plain([0.55, 0.02, 0.02], 0.3))?,
                 assets.piece("button_square", plain([0.02, 0.06, 0.55], 0.3))?,
             ],
             cuboid: assets.mesh("box")?,
-            light: light(config),
-            lamps: lamps(config),
+            // Faces of one colour need a light too, to be told apart.
+            light: Some(light(config)),
+            lamps: if shows.materials {
+                lamps(config)
+            } else {
+                Vec::new()
+            },
+            enclosure: shows.ambient_occlusion.then(|| enclosure(config)),
+            shows: shows.clone(),
+            board,
         })
+    }
+
+    /// Shows the scores on the board over the lane, where the scene has one.
+    ///
+    /// # Errors
+    /// When the board cannot be painted.
+    pub fn show_scores(&mut self, renderer: &mut Renderer, scores: &Scores) -> Result<()> {
+        match &mut self.board {
+            Some(board) => board.show(renderer, scores),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The inside of the hall.
+fn enclosure(config: &Config) -> Enclosure {
+    let side = config.room.half_width_m as f32;
+    let rear = config.lane.headpin_z_m + config.kickback.starts_before_headpin_m + 0.25;
+    Enclosure {
+        min: Vec3::new(-side, 0.0, rear as f32),
+        max: Vec3::new(
+            side,
+            config.room.height_m as f32,
+            config.room.depth_m as f32,
+        ),
+        reach_m: 0.35,
     }
 }
 
@@ -81,6 +167,7 @@ impl Stock {
 struct Assets<'a> {
     renderer: &'a mut Renderer,
     root: &'a Path,
+    shows: &'a ShowsConfig,
 }
 
 impl Assets<'_> {
@@ -104,6 +191,147 @@ impl Assets<'_> {
             .load_texture(&path)
             .map_err(|error| unusable(&error))
     }
+
+    fn built(&mut self, mesh: &mesh::Mesh) -> Result<MeshId> {
+        Ok(self.renderer.add_mesh(&mesh.to_data())?)
+    }
+
+    /// A pin; where faces have one colour its bands are meshes of their own.
+    fn pin(&mut self, looks: &Looks) -> Result<Vec<Piece>> {
+        let low = self.mesh("pin_low")?;
+        let mut pieces = Vec::new();
+        if self.shows.low_polygon {
+            pieces.push(Piece {
+                mesh: low,
+                material: looks.pin,
+            });
+        } else {
+            let pin = self.piece("pin", looks.pin)?;
+            self.renderer.set_stand_in(pin.mesh, low)?;
+            pieces.push(pin);
+        }
+        if !self.shows.materials {
+            pieces.push(self.piece("pin_bands", plain([0.52, 0.01, 0.02], 0.4))?);
+        }
+        Ok(pieces)
+    }
+
+    /// A ball of radius 1.
+    fn ball(&mut self) -> Result<MeshId> {
+        let low = self.built(&mesh::sphere(1.0, 12, 8))?;
+        if self.shows.low_polygon {
+            return Ok(low);
+        }
+        let ball = self.mesh("ball")?;
+        self.renderer.set_stand_in(ball, low)?;
+        Ok(ball)
+    }
+
+    fn balls(&mut self) -> Result<Vec<Material>> {
+        if !self.shows.materials {
+            return Ok(looks::PLAIN_BALLS.map(|color| plain(color, 0.3)).to_vec());
+        }
+        let mut balls = Vec::new();
+        for name in BALL_TEXTURES {
+            balls.push(looks::ball(self.texture(name)?));
+        }
+        Ok(balls)
+    }
+
+    fn ball_holes(&mut self) -> Result<Option<Piece>> {
+        if self.shows.materials {
+            return Ok(None);
+        }
+        let dark = plain([0.01, 0.01, 0.01], 0.8);
+        Ok(Some(self.piece("ball_holes", dark)?))
+    }
+
+    fn hands(&mut self) -> Result<Hands> {
+        let round = if self.shows.low_polygon { 4 } else { 8 };
+        let mut closing = Vec::new();
+        for step in 0..=CLOSING_STEPS {
+            let closed = step as f32 / CLOSING_STEPS as f32;
+            closing.push(self.built(&hand(&Fingers::closing(closed), round))?);
+        }
+        Ok(Hands {
+            closing,
+            pointing: self.built(&hand(&Fingers::pointing(), round))?,
+            gripping: self.built(&hand(&Fingers::gripping(), round))?,
+            skin: plain([0.62, 0.40, 0.29], 0.6),
+        })
+    }
+
+    fn scenery(&mut self, config: &Config, looks: &Looks) -> Result<Vec<Instance>> {
+        let mut scenery = Vec::new();
+        for (surface, mesh) in scenery::meshes(config) {
+            let piece = Piece {
+                mesh: self.built(&mesh)?,
+                material: looks.of(surface),
+            };
+            scenery.push(piece.at(Mat4::IDENTITY));
+        }
+        Ok(scenery)
+    }
+
+    /// The lanes beside, each a copy of one, with pins of few corners: none is nearer than two metres to one's own.
+    fn neighbours(
+        &mut self,
+        config: &Config,
+        looks: &Looks,
+        pin: &[Piece],
+        scenery: &mut Vec<Instance>,
+    ) -> Result<Vec<Instance>> {
+        let middles = scenery::neighbour_middles(config);
+        if middles.is_empty() {
+            return Ok(Vec::new());
+        }
+        for (surface, mesh) in scenery::neighbour_meshes(config) {
+            let piece = Piece {
+                mesh: self.built(&mesh)?,
+                material: looks.of(surface),
+            };
+            let copies = middles.iter().map(|x| piece.at(moved(Vec3::X * *x)));
+            scenery.extend(copies);
+        }
+        let low = Piece {
+            mesh: self.mesh("pin_low")?,
+            // Outside of the box in which shadows are cast.
+            material: Material {
+                casts_shadows: false,
+                ..pin[0].material
+            },
+        };
+        let spots = scenery::pin_spots(config);
+        let pins = middles
+            .iter()
+            .flat_map(|x| spots.iter().map(|spot| *spot + Vec3::X * *x))
+            .map(|spot| low.at(moved(spot)));
+        Ok(pins.collect())
+    }
+
+    fn house_balls(&mut self, config: &Config, balls: &[Material]) -> Result<Vec<Instance>> {
+        let house = scenery::house_balls(config);
+        if house.is_empty() {
+            return Ok(Vec::new());
+        }
+        let mesh = self.built(&mesh::sphere(1.0, 20, 12))?;
+        let instance = |ball: &scenery::HouseBall| {
+            let number = ball.number;
+            let turn = Quat::from_rotation_y(1.7 * number as f32) * Quat::from_rotation_x(0.9);
+            let place = Affine3A::from_scale_rotation_translation(
+                Vec3::splat(ball.radius),
+                turn,
+                ball.position,
+            );
+            let material = balls[number % balls.len()];
+            Piece { mesh, material }.at(Mat4::from(place))
+        };
+        Ok(house.iter().map(instance).collect())
+    }
+}
+
+fn moved(by: Vec3) -> Mat4 {
+    Mat4::from_translation(by)
 }
 
 /// The same remedy for whatever is wrong with an asset: all of them can be made anew.
@@ -111,47 +339,24 @@ fn unusable(error: &RenderError) -> anyhow::Error {
     anyhow!("{error}; write the file anew with `cargo run --bin make-assets`")
 }
 
-fn plain(color: [f32; 3], roughness: f32) -> Material {
-    Material {
-        roughness,
-        ..Material::new(color)
-    }
-}
-
-/// A texture, dimmed to `brightness`.
-fn textured(texture: TextureId, brightness: f32, roughness: f32) -> Material {
-    Material {
-        texture: Some(texture),
-        ..plain([brightness; 3], roughness)
-    }
-}
-
-/// Linear colours and roughness of the scenery.
-fn surface_material(surface: Surface, boards: TextureId, approach: TextureId) -> Material {
-    match surface {
-        Surface::Lane => textured(boards, 0.95, 0.22),
-        Surface::Approach => textured(approach, 0.95, 0.35),
-        Surface::Markings => plain([0.05, 0.03, 0.02], 0.6),
-        Surface::Gutters => plain([0.10, 0.10, 0.11], 0.45),
-        Surface::Capping => plain([0.16, 0.12, 0.10], 0.6),
-        Surface::Pit => plain([0.035, 0.035, 0.04], 0.9),
-        Surface::Masking => plain([0.10, 0.13, 0.20], 0.7),
-        Surface::Floor => plain([0.13, 0.12, 0.15], 0.85),
-        Surface::Walls => plain([0.42, 0.38, 0.33], 0.9),
-        Surface::Ceiling => plain([0.50, 0.49, 0.47], 0.95),
-        Surface::Lamps => Material::unlit([1.0, 0.96, 0.88]),
-        Surface::RackStand => plain([0.12, 0.12, 0.13], 0.5),
-    }
-}
-
 /// Look of what is drawn as the box that it is; `None` for what has a mesh of its own or is scenery.
 pub(super) fn box_material(model: Model) -> Option<Material> {
+    let mirrored = |material| Material {
+        is_mirrored: true,
+        ..material
+    };
+    // The machine hangs under the pins' own light: its shadow would lie on every rack.
+    let machine = |color, roughness| Material {
+        casts_shadows: false,
+        ..mirrored(plain(color, roughness))
+    };
     match model {
         Model::FoulLine => Some(Material::new([0.02, 0.02, 0.02])),
-        Model::Kickback => Some(Material::new([0.10, 0.09, 0.09])),
-        Model::Rack => Some(plain([0.22, 0.22, 0.24], 0.4)),
-        Model::Desk => Some(plain([0.30, 0.20, 0.12], 0.5)),
-        Model::SweepBar => Some(plain([0.20, 0.21, 0.24], 0.4)),
+        Model::Kickback => Some(mirrored(looks::KICKBACK.material())),
+        Model::Rack => Some(mirrored(looks::METAL.material())),
+        Model::Desk => Some(plain([0.23, 0.13, 0.07], 0.4)),
+        Model::SweepBar => Some(machine([0.035, 0.04, 0.055], 0.75)),
+        Model::SettingTable => Some(machine([0.04, 0.04, 0.05], 0.6)),
         Model::Pin(_)
         | Model::Ball(_)
         | Model::Hand

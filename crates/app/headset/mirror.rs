@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Result, anyhow};
 use game::{Button, Config};
-use renderer::{BackendChoice, Renderer, RendererSettings, WindowTarget};
+use renderer::{BackendChoice, Renderer, WindowTarget};
 use winit::application::ApplicationHandler;
 use winit::dpi::LogicalSize;
 use winit::event::WindowEvent;
@@ -85,7 +85,7 @@ impl Mirror {
             .with_inner_size(LogicalSize::new(640, 640));
         let window = Arc::new(events.create_window(attributes)?);
         let (gpu, target) = WindowTarget::new(window, BackendChoice::Auto)?;
-        let mut renderer = Renderer::new(&gpu, RendererSettings::default())?;
+        let mut renderer = Renderer::new(&gpu, convert::settings(&self.config.shows))?;
         let stock = Stock::load(&mut renderer, &self.root, &self.config)?;
         Ok(Stage {
             target,
@@ -103,12 +103,17 @@ impl Mirror {
         };
         let seen = self.shared.with(|session| {
             let game = session.game();
-            Ok((game.visible(), game.held().is_some()))
+            Ok((
+                game.visible(),
+                convert::HandShape::of(game),
+                convert::Scores::of(game),
+            ))
         })?;
-        let Some((visible, is_holding)) = seen else {
+        let Some((visible, hand, scores)) = seen else {
             return Ok(());
         };
-        let scene = convert::scene(visible.iter(), &stage.stock, is_holding);
+        stage.stock.show_scores(&mut stage.renderer, &scores)?;
+        let scene = convert::scene(visible.iter(), &stage.stock, hand);
         stage
             .target
             .draw(&mut stage.renderer, &scene, &[view])

@@ -1,8 +1,11 @@
 //! What pictures are made from: light snapshots of the alley, taken while a game is played.
 
+use std::sync::Arc;
+
 use game::{Button, EventKind, Game, Model, Visible};
 use physics::Pose;
 
+use crate::convert::{HandShape, Scores};
 use crate::sound::{Reporter, Sounded};
 
 /// Snapshots per second: a third of the scripted rate. Every one of them may become a picture of the
@@ -18,8 +21,10 @@ pub struct Shot {
     pub head: Option<Pose>,
     /// The things that can move.
     pub moving: Vec<Visible>,
-    /// True while the hand holds something.
-    pub hand_is_closed: bool,
+    /// The hand's shape.
+    pub hand: HandShape,
+    /// Both score sheets; many snapshots share one.
+    pub scores: Arc<Scores>,
 }
 
 /// One delivery, as indices into [`Film::shots`].
@@ -87,7 +92,7 @@ pub struct Camera {
     last_shot: Option<f64>,
     grab: Option<usize>,
     release: Option<usize>,
-    hand_is_closed: bool,
+    scores: Arc<Scores>,
 }
 
 impl Camera {
@@ -106,7 +111,7 @@ impl Camera {
             last_shot: None,
             grab: None,
             release: None,
-            hand_is_closed: false,
+            scores: Arc::new(Scores::of(game)),
         }
     }
 
@@ -114,22 +119,16 @@ impl Camera {
     pub fn observe(&mut self, game: &Game) {
         let is_moment = game.events().iter().any(|event| is_moment(&event.kind));
         for event in game.events() {
-            match event.kind {
-                EventKind::GameStarted { button } => {
-                    self.films.push(Film {
-                        button,
-                        shots: Vec::new(),
-                        throws: Vec::new(),
-                        sounds: Vec::new(),
-                        total: 0,
-                    });
-                    self.is_filming = true;
-                    self.last_shot = None;
-                }
-                // Before the snapshot, which shows the hand as the grab and the release leave it.
-                EventKind::Grabbed { .. } => self.hand_is_closed = true,
-                EventKind::Released(_) => self.hand_is_closed = false,
-                _ => {}
+            if let EventKind::GameStarted { button } = event.kind {
+                self.films.push(Film {
+                    button,
+                    shots: Vec::new(),
+                    throws: Vec::new(),
+                    sounds: Vec::new(),
+                    total: 0,
+                });
+                self.is_filming = true;
+                self.last_shot = None;
             }
         }
         let is_due = self
@@ -159,7 +158,10 @@ impl Camera {
     }
 
     fn shoot(&mut self, game: &Game) {
-        let hand_is_closed = self.hand_is_closed;
+        let scores = Scores::of(game);
+        if scores != *self.scores {
+            self.scores = Arc::new(scores);
+        }
         let Some(film) = self.films.last_mut() else {
             return;
         };
@@ -171,7 +173,8 @@ impl Camera {
                 .into_iter()
                 .filter(|visible| can_move(visible.model))
                 .collect(),
-            hand_is_closed,
+            hand: HandShape::of(game),
+            scores: Arc::clone(&self.scores),
         });
         self.last_shot = Some(game.time());
     }
@@ -234,6 +237,7 @@ pub fn can_move(model: Model) -> bool {
             | Model::RedButton
             | Model::BlueButton
             | Model::SweepBar
+            | Model::SettingTable
     )
 }
 

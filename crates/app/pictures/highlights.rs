@@ -199,7 +199,8 @@ mod tests {
             time: number as f64 / 30.0,
             head: None,
             moving: Vec::new(),
-            hand_is_closed: false,
+            hand: crate::convert::HandShape::Closing(0.0),
+            scores: std::sync::Arc::new(crate::convert::Scores::empty(game::MAX_FRAMES)),
         };
         let throw = |(number, fallen): (usize, &usize)| Throw {
             frame: number as u32 + 1,

@@ -1,4 +1,4 @@
-//! The lane's own scenery: boards, approach, gutters, capping, and the pit behind the deck.
+//! The lane's own scenery: boards, approach, gutters, capping, the pit behind the deck and the housing over it.
 
 use game::Config;
 use glam::{Affine3A, Vec2, Vec3};
@@ -6,24 +6,16 @@ use glam::{Affine3A, Vec2, Vec3};
 use super::mesh::Mesh;
 use super::{Plan, block, both_sides, deck};
 
-/// Length of boards that one texture image shows [m].
-const IMAGE_LENGTH: f32 = 3.6;
-
-/// Boards of the lane; in pieces, so that light falls off on it.
+/// Boards of the lane: u counts them, v is metres.
 pub(super) fn boards(plan: &Plan) -> Mesh {
     let mut mesh = Mesh::default();
-    let pieces = 8;
-    for i in 0..pieces {
-        let z = |i: i32| plan.deck_end * i as f32 / pieces as f32;
-        let (near, far) = (z(i), z(i + 1));
-        deck(
-            &mut mesh,
-            Vec2::new(-plan.half_lane, far),
-            Vec2::new(plan.half_lane, near),
-            0.0,
-            Vec2::new(plan.images_across, (near - far) / IMAGE_LENGTH),
-        );
-    }
+    deck(
+        &mut mesh,
+        Vec2::new(-plan.half_lane, plan.deck_end),
+        Vec2::new(plan.half_lane, 0.0),
+        0.0,
+        Vec2::new(2.0 * plan.half_lane / plan.board, -plan.deck_end),
+    );
     // The tail plank's end, and the edges over the gutters.
     block(
         &mut mesh,
@@ -37,10 +29,7 @@ pub(super) fn boards(plan: &Plan) -> Mesh {
 pub(super) fn approach(plan: &Plan) -> Mesh {
     let mut mesh = Mesh::default();
     let half = plan.approach_half();
-    let repeats = Vec2::new(
-        plan.images_across * half / plan.half_lane,
-        plan.approach_end / IMAGE_LENGTH,
-    );
+    let repeats = Vec2::new(2.0 * half / plan.board, plan.approach_end);
     deck(
         &mut mesh,
         Vec2::new(-half, 0.0),
@@ -56,7 +45,8 @@ pub(super) fn gutters(plan: &Plan, config: &Config) -> Mesh {
     let mut right = Mesh::default();
     let (width, depth) = (plan.edge - plan.half_lane, config.gutter.depth_m as f32);
     // Every other edge is one of the strips that collide; those between make it look round.
-    let slices = 2 * config.gutter.facets as i32;
+    let finer = if plan.is_low { 1 } else { 2 };
+    let slices = finer * config.gutter.facets as i32;
     // The arc of a circle through both edges, `depth` below them in the middle.
     let radius = (0.25 * width * width + depth * depth) / (2.0 * depth);
     let height = |x: f32| radius - depth - (radius * radius - (x - 0.5 * width).powi(2)).sqrt();
@@ -88,8 +78,10 @@ pub(super) fn gutters(plan: &Plan, config: &Config) -> Mesh {
 /// The capping beside the gutters, level with the lane, out to the walls.
 pub(super) fn capping(plan: &Plan) -> Mesh {
     let mut right = Mesh::default();
-    let low = Vec3::new(plan.edge, plan.underside, plan.masking);
-    block(&mut right, low, Vec3::new(plan.half_room, 0.0, 0.0));
+    for (from, to) in plan.between_lanes() {
+        let low = Vec3::new(from, plan.underside, plan.masking);
+        block(&mut right, low, Vec3::new(to, 0.0, 0.0));
+    }
     both_sides(&right)
 }
 
@@ -111,7 +103,14 @@ pub(super) fn pit(plan: &Plan, config: &Config) -> Mesh {
         Vec3::new(-plan.edge, plan.pit_floor, back),
         Vec3::new(plan.edge, cushion_top, plan.cushion),
     );
-    // The dark housing of the machine closes the view over cushion and kickbacks.
+    mesh
+}
+
+/// The dark housing of the machines: it closes the view over cushions and kickbacks, and between the lanes.
+pub(super) fn housing(plan: &Plan, config: &Config) -> Mesh {
+    let mut mesh = Mesh::default();
+    let back = plan.rear;
+    let cushion_top = config.pit.cushion_height_m as f32;
     block(
         &mut mesh,
         Vec3::new(-plan.half_room, plan.pit_floor, back - 0.05),
@@ -121,13 +120,21 @@ pub(super) fn pit(plan: &Plan, config: &Config) -> Mesh {
             back,
         ),
     );
-    let outside = plan.edge + config.kickback.thickness_m as f32 + 0.02;
+    let kickback = config.kickback.thickness_m as f32 + 0.02;
     let mut beside = Mesh::default();
-    block(
-        &mut beside,
-        Vec3::new(outside, plan.pit_floor, back),
-        Vec3::new(plan.half_room, plan.masking_bottom, plan.masking - 0.02),
-    );
+    for (from, to) in plan.between_lanes() {
+        // Beyond the outermost kickback there is a wall, not another kickback.
+        let to = if to < plan.half_room {
+            to - kickback
+        } else {
+            to
+        };
+        block(
+            &mut beside,
+            Vec3::new(from + kickback, plan.pit_floor, back),
+            Vec3::new(to, plan.masking_bottom, plan.masking - 0.02),
+        );
+    }
     mesh.append(&both_sides(&beside), Affine3A::IDENTITY);
     mesh
 }

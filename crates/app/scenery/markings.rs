@@ -9,51 +9,64 @@ use super::{DECAL, Plan};
 /// Boards across the lane by which the rule book places its markings.
 const RULE_BOARDS: f32 = 39.0;
 
-/// Arrows and dots at the boards that the rule book gives: seven arrows 12 to 16 ft down the lane, dots on the lane at
-/// 7 ft, rows of dots on the approach. On a lane of another width they keep their share of it; what would lie beyond the
-/// head pin or the approach is left out.
+/// Arrows and dots at the boards that the settings give, and the pin spots. On a lane of another width they keep their share
+/// of it; what would lie beyond the head pin or the approach is left out.
 pub(super) fn markings(plan: &Plan, config: &Config) -> Mesh {
-    let mut mesh = Mesh::default();
-    let board = config.lane.width_m as f32 / RULE_BOARDS;
-    let x_of = |number: f32| (0.5 * (RULE_BOARDS + 1.0) - number) * board;
-    for step in -3..=3_i32 {
-        let (x, z) = (
-            x_of(20.0 + 5.0 * step as f32),
-            -4.7244 + 0.3048 * step.abs() as f32,
-        );
-        if z < plan.headpin {
-            continue;
-        }
-        arrow(&mut mesh, Vec3::new(x, DECAL, z));
-    }
-    let lane_dots = [3.0, 5.0, 8.0, 11.0, 14.0, 26.0, 29.0, 32.0, 35.0, 37.0];
-    for number in lane_dots {
-        dot(&mut mesh, Vec3::new(x_of(number), DECAL, -2.1336));
-    }
-    for z in [0.0762, 3.6576, plan.approach_end - 0.05] {
+    let mut mesh = lane_markings(plan, config);
+    let paint = &config.markings;
+    for z in &paint.approach_dots_z_m {
+        let z = *z as f32;
         if z > plan.approach_end {
             continue;
         }
-        for i in 1..=7 {
-            dot(&mut mesh, Vec3::new(x_of(5.0 * i as f32), DECAL, z));
-        }
-    }
-    // The pin spots, 2 1/4 in wide.
-    let (pitch, half_spacing) = (
-        config.lane.row_pitch_m as f32,
-        0.5 * config.lane.pin_spacing_m as f32,
-    );
-    for row in 0..4 {
-        for i in 0..=row {
-            let x = (2 * i - row) as f32 * half_spacing;
-            disc(
-                &mut mesh,
-                Vec3::new(x, DECAL, plan.headpin - row as f32 * pitch),
-                0.028575,
-            );
+        for number in &paint.approach_dot_boards {
+            dot(&mut mesh, Vec3::new(board_x(config, *number), DECAL, z));
         }
     }
     mesh
+}
+
+/// Middle of a board, counted from the right edge [m].
+fn board_x(config: &Config, number: u32) -> f32 {
+    let board = config.lane.width_m as f32 / RULE_BOARDS;
+    (0.5 * (RULE_BOARDS + 1.0) - number as f32) * board
+}
+
+/// What is painted on a lane.
+pub(super) fn lane_markings(plan: &Plan, config: &Config) -> Mesh {
+    let mut mesh = Mesh::default();
+    let paint = &config.markings;
+    for (number, z) in paint.arrow_boards.iter().zip(&paint.arrow_z_m) {
+        let z = *z as f32;
+        if z >= plan.headpin {
+            arrow(&mut mesh, Vec3::new(board_x(config, *number), DECAL, z));
+        }
+    }
+    let row = paint.lane_dots_z_m as f32;
+    for number in &paint.lane_dot_boards {
+        if row >= plan.headpin {
+            dot(&mut mesh, Vec3::new(board_x(config, *number), DECAL, row));
+        }
+    }
+    // The pin spots, 2 1/4 in wide.
+    for spot in pin_spots(config) {
+        disc(&mut mesh, spot + Vec3::Y * DECAL, 0.028575);
+    }
+    mesh
+}
+
+/// Where the pins of a lane stand, about the lane's own middle [m].
+pub fn pin_spots(config: &Config) -> Vec<Vec3> {
+    let lane = &config.lane;
+    let mut spots = Vec::new();
+    for row in 0..4 {
+        for i in 0..=row {
+            let x = f64::from(2 * i - row) * 0.5 * lane.pin_spacing_m;
+            let z = lane.headpin_z_m - f64::from(row) * lane.row_pitch_m;
+            spots.push(Vec3::new(x as f32, 0.0, z as f32));
+        }
+    }
+    spots
 }
 
 /// A dart 15 cm long that points down the lane.

@@ -3,8 +3,16 @@ use physics::query::{Limits, separation};
 use physics::{Pose, Shape};
 
 use super::*;
-use crate::convert::tests::config;
+use crate::convert::tests::config as shipped;
 use glam::DVec3;
+
+/// The shipped settings without what takes no part in the game.
+fn config() -> Config {
+    let mut config = shipped();
+    config.shows.neighbouring_lanes = false;
+    config.shows.furnishings = false;
+    config
+}
 
 /// Seen and solid surfaces lie no farther apart than this [m]: floors beside the approach are seen 2.4 mm low, round
 /// gutters bulge 2 mm below the strips that collide.
@@ -160,7 +168,7 @@ fn what_is_seen_is_where_it_is_solid_whatever_the_settings() {
         ("pit.cushion_behind_deck_m", |c| {
             c.pit.cushion_behind_deck_m = 1.5
         }),
-        ("room.half_width_m", |c| c.room.half_width_m = 3.5),
+        ("room.half_width_m", |c| c.room.half_width_m = 5.5),
         ("room.depth_m", |c| c.room.depth_m = 9.0),
         ("room.height_m", |c| c.room.height_m = 4.0),
         ("kickback.thickness_m", |c| c.kickback.thickness_m = 0.1),
@@ -221,11 +229,11 @@ fn boards_and_approach_act_on_the_picture() {
     let mut changed = config();
     changed.lane.boards = 13;
     changed.room.approach_length_m = 3.0;
-    assert_eq!(extent(&config(), Surface::Lane).0, 1.0);
-    assert!((extent(&changed, Surface::Lane).0 - 13.0 / 39.0).abs() < 1e-6);
+    assert!((extent(&config(), Surface::Lane).0 - 39.0).abs() < 1e-4);
+    assert!((extent(&changed, Surface::Lane).0 - 13.0).abs() < 1e-4);
     let (u, z) = extent(&changed, Surface::Approach);
     let wide = extent(&config(), Surface::Approach).0;
-    assert!((u - wide / 3.0).abs() < 1e-6, "{u}");
+    assert!((u - wide / 3.0).abs() < 1e-4, "{u}");
     assert_eq!(z, 3.0);
     // The floor begins where the approach ends, and is not drawn where there is none.
     changed.room.approach_length_m = changed.room.depth_m;
@@ -254,4 +262,70 @@ fn extreme_settings_give_meshes_that_can_be_drawn() {
     let (_, markings) = &meshes(&config)[2];
     let beyond = |v: &mesh::Vertex| v.position.z < config.lane.deck_end_z_m as f32;
     assert!(!markings.vertices.iter().any(beyond), "painted on air");
+}
+
+#[test]
+fn markings_lie_at_the_places_of_the_rule_book() {
+    // USBC: board n from the right edge, arrows 12 ft 6 in to 15 ft 6 in past the foul line, as lane data has them [m].
+    let published = [
+        (0.40542, -3.8100),
+        (0.27028, -4.1148),
+        (0.13514, -4.4196),
+        (0.0, -4.7244),
+        (-0.13514, -4.4196),
+        (-0.27028, -4.1148),
+        (-0.40542, -3.8100),
+        // Dots on boards 3 and 14, 7 feet past; on board 10, 3 inches and 12 feet before.
+        (0.459479, -2.1336),
+        (0.162169, -2.1336),
+        (0.27028, 0.0762),
+        (0.27028, 3.6576),
+        // The 7 pin's spot.
+        (-0.457200, -19.079894),
+    ];
+    let config = shipped();
+    let plan = Plan::new(&config);
+    let paint = markings::markings(&plan, &config);
+    for (x, z) in published {
+        let at = Vec3::new(x, DECAL, z);
+        let nearest = paint.vertices.iter().map(|v| v.position.distance(at));
+        let nearest = nearest.fold(f32::INFINITY, f32::min);
+        assert!(nearest < 1e-4, "({x}, {z}) is {nearest} m from any paint");
+    }
+    let seven = config.markings.arrow_boards.len();
+    assert_eq!((seven, config.lane.boards), (7, 39));
+}
+
+#[test]
+fn neighbours_lie_beside_the_lane_and_overlap_nothing() {
+    let config = shipped();
+    let plan = Plan::new(&config);
+    assert_eq!(plan.neighbours, [-3.6, -1.8, 1.8, 3.6]);
+    let mut last = plan.edge;
+    for (from, to) in plan.between_lanes() {
+        assert!(from >= last && to > from, "{from} {to} after {last}");
+        last = to + 2.0 * plan.edge;
+    }
+    let mut narrow = shipped();
+    narrow.room.half_width_m = 2.5;
+    assert!(neighbour_middles(&narrow).is_empty());
+    let one = neighbour_meshes(&config);
+    let widest = one.iter().flat_map(|(_, mesh)| &mesh.vertices);
+    let widest = widest.map(|v| v.position.x.abs()).fold(0.0, f32::max);
+    assert!(2.0 * widest < plan.pitch, "{widest}");
+}
+
+#[test]
+fn house_balls_lie_on_their_rails_inside_the_room() {
+    let config = shipped();
+    let balls = house_balls(&config);
+    assert_eq!(balls.len(), 15);
+    for ball in &balls {
+        assert!(ball.position.x + ball.radius < config.room.half_width_m as f32);
+        let near = balls.iter().filter(|other| {
+            let apart = other.position.distance(ball.position);
+            apart > 0.0 && apart < 2.0 * ball.radius
+        });
+        assert_eq!(near.count(), 0);
+    }
 }

@@ -11,6 +11,7 @@ mod layers;
 mod origins;
 mod scene;
 mod session;
+mod shows;
 mod things;
 mod validate;
 mod wording;
@@ -29,6 +30,7 @@ pub use session::{
     DisplayConfig, DisplayProfile, DisplayProfileName, ParticipantConfig, PinsetterConfig,
     RulesConfig, TrackingConfig,
 };
+pub use shows::{MarkingsConfig, ShowsConfig};
 pub use things::{
     BallConfig, HandConfig, PinConfig, PinEllipsoidConfig, PinPartsConfig, ReleaseConfig,
     ReleaseFit, WalkingConfig,
@@ -46,8 +48,12 @@ pub struct Config {
     pub coulomb: CoulombConfig,
     /// Oil on the lane.
     pub oil: OilConfig,
+    /// What is seen of it all.
+    pub shows: ShowsConfig,
     /// The lane and the pin deck.
     pub lane: LaneConfig,
+    /// What is painted on lane and approach.
+    pub markings: MarkingsConfig,
     /// The gutters on both sides.
     pub gutter: GutterConfig,
     /// The plates on both sides of the pin deck.

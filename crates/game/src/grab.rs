@@ -7,12 +7,14 @@ use physics::query::{Limits, separation};
 use physics::{Motion, Pose, Shape};
 
 use crate::Game;
-use crate::components::{Ball, Held, Journey, Pin, PinKeeper};
+use crate::components::{Ball, Held, Journey, Pin, PinKeeper, Shown};
 use crate::event::{EventKind, Release, ReleaseSource, ReleaseVelocity};
 use crate::hand::surface_distance;
+use crate::holes;
 use crate::input::{Input, Velocity};
 use crate::release;
 use crate::room::Room;
+use crate::visible::Model;
 
 /// How often a held thing is pushed out of the boxes that it is carried into; corners take more than one.
 const PUSHES: usize = 3;
@@ -101,6 +103,15 @@ impl Game {
         self.record(EventKind::Dropped { model });
     }
 
+    /// Turns the ball's picture, not the ball, so that the hand closes on the holes.
+    fn show_holes_under(&mut self, ball: Entity, hand: Pose) {
+        let body = self.room.body(ball).pose();
+        let mut shown: Shown = self.room.get(ball);
+        let world_from_model = holes::world_from_model(&hand, body.position);
+        shown.body_from_model.rotation = body.rotation.inverse() * world_from_model;
+        self.room.set(ball, shown);
+    }
+
     /// The hand takes hold of a thing as it lies to it now.
     fn grab(&mut self, entity: Entity, hand: Pose) {
         let id = self.room.id(entity);
@@ -114,6 +125,9 @@ impl Game {
         self.hand.let_go = None;
         self.note_on_ball(entity, None);
         let model = self.room.model(entity);
+        if matches!(model, Model::Ball(_)) {
+            self.show_holes_under(entity, hand);
+        }
         self.record(EventKind::Grabbed { model });
     }
 

@@ -25,6 +25,8 @@ pub(crate) struct Hand {
     pub history: PoseHistory,
     /// True while the trigger holds it closed.
     pub is_closed: bool,
+    /// The trigger, from 0 to 1, for the picture.
+    pub trigger: f64,
     pub held: Option<Held>,
     /// What it let go and has not yet drawn clear of: the two pass through each other.
     pub let_go: Option<hecs::Entity>,
@@ -61,6 +63,7 @@ impl Game {
                 found,
             });
         }
+        self.hand.trigger = input.trigger;
         let rig = self.world_from_tracking;
         let before = self.hand.now;
         let now = hand.map(|tracked| rig * tracked.pose);

@@ -18,6 +18,7 @@ mod contest;
 mod event;
 mod grab;
 mod hand;
+mod holes;
 mod input;
 mod observe;
 mod pin_shape;
@@ -37,15 +38,16 @@ pub use condition::{Button, Conditions};
 pub use config::{
     BallConfig, Config, ConfigError, CoulombConfig, DeskConfig, DisplayConfig, DisplayProfile,
     DisplayProfileName, EffectName, GutterConfig, HandConfig, KickbackConfig, LaneConfig, Layer,
-    ObjectShape, ObjectsConfig, OilConfig, PairConfig, ParticipantConfig, PhysicsConfig, PinConfig,
-    PinEllipsoidConfig, PinPartsConfig, PinsetterConfig, PitConfig, RackConfig, ReleaseConfig,
-    ReleaseFit, ResponseModel, RoomConfig, RulesConfig, SceneConfig, SceneEffect, SoundConfig,
-    StartConfig, TrackingConfig, WalkingConfig,
+    MarkingsConfig, ObjectShape, ObjectsConfig, OilConfig, PairConfig, ParticipantConfig,
+    PhysicsConfig, PinConfig, PinEllipsoidConfig, PinPartsConfig, PinsetterConfig, PitConfig,
+    RackConfig, ReleaseConfig, ReleaseFit, ResponseModel, RoomConfig, RulesConfig, SceneConfig,
+    SceneEffect, ShowsConfig, SoundConfig, StartConfig, TrackingConfig, WalkingConfig,
 };
 pub use contacts::{Contact, RollingBall};
 pub use event::{
     EndReason, Event, EventKind, Release, ReleaseSource, ReleaseVelocity, TrackedPart,
 };
+pub use holes::{FINGERS_IN_HAND, HALF_SPAN, THUMB_IN_HAND, hand_on_ball};
 pub use input::{Input, Tracked, TriggerChange, Velocity};
 pub use observe::{BallSeen, ButtonSeen, Observation, Phase, PinSeen};
 pub use score::{Delivery, PINS, Roll, ScoreError, ScoreSheet};
@@ -115,7 +117,9 @@ fn differing(condition: &Config, lobby: &Config) -> Option<&'static str> {
             "physics.step_hz",
             condition.physics.step_hz != lobby.physics.step_hz,
         ),
+        ("shows", condition.shows != lobby.shows),
         ("lane", condition.lane != lobby.lane),
+        ("markings", condition.markings != lobby.markings),
         ("gutter", condition.gutter != lobby.gutter),
         ("kickback", condition.kickback != lobby.kickback),
         ("pit", condition.pit != lobby.pit),

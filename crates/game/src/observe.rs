@@ -171,6 +171,11 @@ impl Game {
         count(&self.room).1
     }
 
+    /// How far the trigger is pulled, from 0 to 1: how far the hand has closed.
+    pub fn trigger(&self) -> f64 {
+        self.hand.trigger.clamp(0.0, 1.0)
+    }
+
     /// Everything that can be seen now.
     pub fn visible(&self) -> Vec<Visible> {
         self.visible_at(1.0)

@@ -6,10 +6,10 @@ use physics::Pose;
 
 use crate::Game;
 use crate::alley;
-use crate::components::{Ball, Journey, Pin, PinKeeper};
+use crate::components::{Ball, Journey, Painted, Pin, PinKeeper};
 use crate::config::Config;
 use crate::event::EventKind;
-use crate::room::Room;
+use crate::room::{Room, TABLE_THICKNESS};
 use crate::throw::{Stage, base_and_axis, is_down};
 
 /// How far before the deck the sweep bar waits and comes down [m].
@@ -17,6 +17,9 @@ const BAR_BEFORE_DECK: f64 = 0.25;
 
 /// How close to the deck's end the sweep bar goes [m].
 const BAR_BEFORE_END: f64 = 0.05;
+
+/// Gap between the heads of standing pins and the pinsetter's rack [m].
+const TABLE_ABOVE_PINS: f64 = 0.005;
 
 /// Gap between the sweep bar and the deck [m].
 const BAR_ABOVE_DECK: f64 = 0.01;
@@ -172,10 +175,30 @@ fn bar_pose(config: &Config, down: f64, along: f64) -> Pose {
     Pose::from_position(DVec3::new(0.0, bottom + machine.bar_height_m / 2.0, z))
 }
 
+/// The pinsetter's rack: `up` is 0 where it holds standing pins by their heads and 1 where it waits.
+pub(crate) fn table_pose(config: &Config, up: f64) -> Pose {
+    let middle = config.lane.headpin_z_m - 1.5 * config.lane.row_pitch_m;
+    let over_pins = config.pin.height_m + TABLE_ABOVE_PINS;
+    let height = over_pins + config.pinsetter.lift_height_m * up;
+    Pose::from_position(DVec3::new(0.0, height + TABLE_THICKNESS / 2.0, middle))
+}
+
+/// How high the rack is at `share` of the cycle's movement.
+fn table_height(cycle: &Cycle, share: f64) -> f64 {
+    let lifts = !cycle.lifted.is_empty();
+    match cycle.movement {
+        Movement::Pause if lifts => 1.0 - share,
+        Movement::Lift if lifts => share,
+        Movement::Set => 1.0 - share,
+        _ => 1.0,
+    }
+}
+
 impl Game {
     /// Moves the machine by one step.
     pub(crate) fn run_pinsetter(&mut self) {
         let Stage::Setting(cycle) = &self.stage else {
+            self.raise_table();
             return;
         };
         let steps = self
@@ -203,6 +226,19 @@ impl Game {
                 let (_, standing) = crate::throw::count(&self.room);
                 self.record(EventKind::PinsReady { standing });
             }
+        }
+    }
+
+    /// The rack goes up again from pins that it has set, at the pace at which it came down.
+    fn raise_table(&mut self) {
+        let config = &self.room.config;
+        let machine = &config.pinsetter;
+        let top = table_pose(config, 1.0);
+        let per_step = machine.lift_height_m / (machine.set_s * config.physics.step_hz);
+        let Painted(mut pose) = self.room.get(self.room.table);
+        if pose.position.y < top.position.y {
+            pose.position.y = (pose.position.y + per_step).min(top.position.y);
+            self.room.set(self.room.table, Painted(pose));
         }
     }
 
@@ -343,6 +379,8 @@ fn move_parts(room: &mut Room, cycle: &Cycle, share: f64) {
     let bar = room.id(room.bar);
     let pose = bar_pose(&room.config, down, along);
     room.world.drive_to(bar, pose);
+    let table = table_pose(&room.config, table_height(cycle, share));
+    room.set(room.table, Painted(table));
     let height = room.config.pinsetter.lift_height_m;
     match cycle.movement {
         Movement::Lift => {

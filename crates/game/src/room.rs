@@ -20,6 +20,10 @@ use crate::visible::Model;
 /// Thickness of the sweep bar along the lane [m].
 const BAR_THICKNESS: f64 = 0.05;
 
+/// Thickness of the pinsetter's rack, and how far it reaches beyond the outer pins' axes [m].
+pub(crate) const TABLE_THICKNESS: f64 = 0.06;
+const TABLE_BEYOND_PINS: f64 = 0.09;
+
 /// How far a button's body reaches into the desk when it is up [m].
 const BUTTON_ROOT: f64 = 0.01;
 
@@ -36,6 +40,8 @@ pub(crate) struct Room {
     pub buttons: [Entity; 2],
     pub hand: Entity,
     pub bar: Entity,
+    /// The pinsetter's rack, which is only seen.
+    pub table: Entity,
     owners: BTreeMap<BodyId, Entity>,
     /// Boxes that never move, for keeping a held thing out of them.
     pub obstacles: Vec<(Pose, DVec3, Shape)>,
@@ -70,6 +76,7 @@ impl Room {
         ];
         let hand = builder.hand()?;
         let bar = builder.bar()?;
+        let table = builder.table();
         let Builder {
             world, ecs, owners, ..
         } = builder;
@@ -82,6 +89,7 @@ impl Room {
             buttons,
             hand,
             bar,
+            table,
             owners,
             obstacles,
             earlier: Vec::new(),
@@ -335,6 +343,24 @@ impl<'a> Builder<'a> {
         let entity = self.driven(Shape::cuboid(size / 2.0)?, pose, shown);
         self.pass_through(entity);
         Ok(entity)
+    }
+
+    /// Pins hang on it by their heads; nothing touches it.
+    fn table(&mut self) -> Entity {
+        let lane = &self.config.lane;
+        let size = DVec3::new(
+            3.0 * lane.pin_spacing_m + 2.0 * TABLE_BEYOND_PINS,
+            TABLE_THICKNESS,
+            3.0 * lane.row_pitch_m + 2.0 * TABLE_BEYOND_PINS,
+        );
+        let shown = Shown {
+            model: Model::SettingTable,
+            size,
+            body_from_model: Pose::IDENTITY,
+            is_hidden: false,
+        };
+        let pose = crate::pinsetter::table_pose(self.config, 1.0);
+        self.ecs.spawn((Painted(pose), shown))
     }
 
     /// Lets a body that was just made pass through everything, until the game puts it to use.

@@ -44,6 +44,8 @@ pub enum Model {
     Desk,
     /// The pinsetter's sweep bar, a box.
     SweepBar,
+    /// The pinsetter's rack, which carries pins by their heads: a box above them.
+    SettingTable,
 }
 
 /// One thing to draw.

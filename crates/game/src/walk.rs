@@ -161,7 +161,7 @@ mod tests {
     #[test]
     fn walls_stop_only_what_goes_towards_them() {
         let config = default_config();
-        let at = DVec3::new(2.4, 1.6, 2.0);
+        let at = DVec3::new(config.room.half_width_m - 0.1, 1.6, 2.0);
         assert_eq!(within_walls(&config, at, DVec3::X), DVec3::ZERO);
         assert_eq!(
             within_walls(&config, at, DVec3::new(-0.1, 0.0, 0.1)),

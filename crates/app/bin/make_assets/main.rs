@@ -9,7 +9,6 @@ mod pieces;
 mod textures;
 
 use anyhow::{Context, Result, bail};
-use bowling_app::scenery::BOARDS_IN_IMAGE;
 use bowling_app::scenery::mesh::{Mesh, cuboid};
 use image::{ImageFormat, RgbImage};
 use std::io::Cursor;
@@ -69,12 +68,13 @@ fn assets(root: &Path) -> Result<Vec<(PathBuf, Vec<u8>)>> {
 }
 
 /// The meshes of what is touched, with their names.
-fn meshes(profile: &[(f32, f32)]) -> [(&'static str, Mesh); 7] {
+fn meshes(profile: &[(f32, f32)]) -> [(&'static str, Mesh); 8] {
     [
         ("pin", pieces::pin(profile)),
+        ("pin_low", pieces::pin_low(profile)),
+        ("pin_bands", pieces::pin_bands(profile)),
         ("ball", pieces::ball()),
-        ("hand_open", pieces::hand(0.0)),
-        ("hand_closed", pieces::hand(0.4)),
+        ("ball_holes", pieces::ball_holes()),
         ("button_round", pieces::button(true)),
         ("button_square", pieces::button(false)),
         ("box", cuboid(glam::Vec3::ONE)),
@@ -84,10 +84,9 @@ fn meshes(profile: &[(f32, f32)]) -> [(&'static str, Mesh); 7] {
 /// The textures, with their names, for pins of a height [m].
 fn textures(height: f32) -> [(&'static str, RgbImage); 7] {
     let ball = textures::ball;
-    let boards = |pale| textures::boards(BOARDS_IN_IMAGE, pale);
     [
-        ("lane_boards", boards(true)),
-        ("approach_boards", boards(false)),
+        ("grain", textures::grain()),
+        ("masking", textures::masking()),
         ("pin", textures::pin(height)),
         (
             "ball_blue",

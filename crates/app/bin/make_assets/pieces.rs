@@ -1,9 +1,11 @@
-//! The things one can touch: pins, ball, hand, buttons.
+//! The things one can touch: pins, ball, buttons.
 
 use anyhow::{Context, Result, ensure};
-use bowling_app::scenery::mesh::{Mesh, capsule, cuboid, drum, lathe, sphere};
-use glam::{Affine3A, Quat, Vec3};
-use std::f32::consts::{FRAC_PI_2, PI};
+use bowling_app::scenery::mesh::{Mesh, cuboid, drum, lathe, sphere};
+use glam::{Affine3A, Vec3};
+use std::f32::consts::PI;
+
+use crate::textures;
 
 /// Reads `height_m,radius_m` rows, from the centre of the base to the crown, as (radius, height).
 pub fn read_profile(csv: &str) -> Result<Vec<(f32, f32)>> {
@@ -58,66 +60,51 @@ pub fn pin(profile: &[(f32, f32)]) -> Mesh {
 
 /// A ball of radius 1 about the origin.
 pub fn ball() -> Mesh {
-    sphere(1.0, 28, 16)
+    sphere(1.0, 32, 18)
 }
 
-/// A right hand about its palm: fingers along -z, palm down, thumb to the left; `curl` 0 is open, 1 is a fist,
-/// and at 0.4 the fingers lie round a ball or in its holes.
-pub fn hand(curl: f32) -> Mesh {
-    let mut hand = Mesh::default();
-    let palm = sphere(1.0, 14, 8);
-    hand.append(&palm, Affine3A::from_scale(Vec3::new(0.043, 0.016, 0.050)));
-    let wrist = capsule(0.026, 0.03, 12);
-    let along_z = Quat::from_rotation_x(FRAC_PI_2);
-    hand.append(
-        &wrist,
-        Affine3A::from_rotation_translation(along_z, Vec3::new(0.0, 0.0, 0.065)),
-    );
-    // Side offset [m], length [m] and thickness [m] of index, middle, ring and little finger.
-    let fingers = [
-        (-0.030, 0.072, 0.0095),
-        (-0.010, 0.080, 0.0098),
-        (0.011, 0.074, 0.0093),
-        (0.030, 0.058, 0.0082),
-    ];
-    for (side, length, radius) in fingers {
-        finger(
-            &mut hand,
-            Vec3::new(side, 0.0, -0.044),
-            0.0,
-            length,
-            radius,
-            curl,
-        );
-    }
-    finger(
-        &mut hand,
-        Vec3::new(-0.036, -0.004, 0.010),
-        0.9,
-        0.052,
-        0.0105,
-        0.5 * curl,
-    );
-    hand
+/// A pin of few corners, for the distance and for blurred sights: nowhere farther from the profile than 2.5 mm.
+pub fn pin_low(profile: &[(f32, f32)]) -> Mesh {
+    lathe(&simplify(profile, 2.5e-3), 8, 0.9)
 }
 
-/// Three phalanges from `root`, turned by `yaw` outward and bent downward by `curl`.
-fn finger(hand: &mut Mesh, root: Vec3, yaw: f32, length: f32, radius: f32, curl: f32) {
-    let along_z = Quat::from_rotation_x(FRAC_PI_2);
-    let mut joint = root;
-    let mut bend = 0.12 + 0.25 * curl;
-    for share in [0.45, 0.32, 0.23] {
-        let turn = Quat::from_rotation_y(yaw) * Quat::from_rotation_x(-bend);
-        let half = 0.5 * share * length;
-        let phalanx = capsule(radius, half, 8);
-        let middle = joint + turn * (Vec3::NEG_Z * half);
-        hand.append(
-            &phalanx,
-            Affine3A::from_rotation_translation(turn * along_z, middle),
-        );
-        joint += turn * (Vec3::NEG_Z * 2.0 * half);
-        bend += 0.10 + 0.75 * curl;
+/// Heights of the red bands on a pin's neck [m].
+pub const BANDS: [(f32, f32); 2] = [(0.2290, 0.2410), (0.2500, 0.2620)];
+
+/// The red bands of a pin that has no texture, a little outside of its skin.
+pub fn pin_bands(profile: &[(f32, f32)]) -> Mesh {
+    let radius = |height: f32| {
+        let after = profile.partition_point(|(_, at)| *at < height);
+        let [(r0, h0), (r1, h1)] = [profile[after - 1], profile[after]];
+        r0 + (r1 - r0) * (height - h0) / (h1 - h0)
+    };
+    let mut bands = Mesh::default();
+    for (low, high) in BANDS {
+        // The skin between two corners of the low pin bulges out of this by up to the tolerance it was made with.
+        let skin = |height: f32| (radius(height) + 0.0022, height);
+        let band = lathe(&[skin(low), skin(high)], 8, 0.9);
+        bands.append(&band, Affine3A::IDENTITY);
     }
+    bands
+}
+
+/// The finger holes of a ball of radius 1 that has no texture: dark discs on its skin.
+pub fn ball_holes() -> Mesh {
+    let mut mesh = Mesh::default();
+    for middle in textures::HOLES.map(textures::on_ball) {
+        let across = middle.any_orthonormal_vector();
+        let up = middle.cross(across);
+        let rim = |i: i32| {
+            let turn = glam::Vec2::from_angle(std::f32::consts::TAU * i as f32 / 8.0);
+            let out = middle + textures::HOLE_RADIUS * (across * turn.x + up * turn.y);
+            1.012 * out.normalize_or(middle)
+        };
+        for i in 0..4 {
+            let corners = [1.012 * middle, rim(2 * i), rim(2 * i + 1), rim(2 * i + 2)];
+            mesh.quad(corners, [glam::Vec2::ZERO, glam::Vec2::ONE]);
+        }
+    }
+    mesh
 }
 
 /// A push button's cap of radius 1 and height 1, resting on y = 0: round, or square for the one told apart by shape.

@@ -1,6 +1,8 @@
-//! Procedural textures: wood boards, a pin's stripes, marbled balls. Colours are sRGB bytes.
+//! Procedural textures: the grain of wood, the panel over the pins, a pin's stripes, marbled balls. Colours are sRGB bytes.
 
 use image::{Rgb, RgbImage};
+
+use crate::pieces::BANDS;
 
 /// Value noise in 0..1 on a lattice that repeats every `period` cells in x; smooth between lattice points.
 fn noise(x: f32, y: f32, period: u32, seed: u32) -> f32 {
@@ -39,22 +41,55 @@ fn rgb(c: [f32; 3]) -> Rgb<u8> {
     Rgb(c.map(|x| x.clamp(0.0, 255.0).round() as u8))
 }
 
-/// `boards` boards side by side (u), grain along v: maple if `pale`, else darker pine.
-pub fn boards(boards: u32, pale: bool) -> RgbImage {
-    let (width, height) = (boards * 16, 512);
-    let (light, dark) = if pale {
-        ([226.0, 188.0, 132.0], [190.0, 146.0, 92.0])
-    } else {
-        ([205.0, 160.0, 104.0], [160.0, 112.0, 64.0])
-    };
+/// Grain of wood along v, grey about a half, that repeats both ways: fine lines, and wider bands of early and late wood.
+pub fn grain() -> RgbImage {
+    let size = 256;
+    RgbImage::from_fn(size, size, |x, y| {
+        let (u, v) = (x as f32 / size as f32, y as f32 / size as f32);
+        // Periods along v in the first argument, which is the one that repeats; blended over u so that it repeats too.
+        let at = |u: f32| {
+            let bands = turbulence(v * 2.0, u * 26.0, 2, 5);
+            let lines = noise(v * 4.0, u * 120.0, 4, 77);
+            let pores = noise(v * 32.0, u * 256.0, 32, 131);
+            0.5 + 0.85 * (bands - 0.5) + 0.28 * (lines - 0.5) - 0.30 * (pores - 0.72).max(0.0)
+        };
+        let grey = at(u) * (1.0 - u) + at(u - 1.0) * u;
+        // The image is sRGB, the shader reads linear: what is a half there is 188 here.
+        let linear = (0.5 + 1.15 * (grey - 0.5)).clamp(0.0, 1.0);
+        rgb([255.0 * linear.powf(1.0 / 2.2); 3])
+    })
+}
+
+/// What is painted on the panel over the pins: an evening sky with a low sun, and hills; twice as much at each side.
+pub fn masking() -> RgbImage {
+    let (width, height) = (1024, 256);
     RgbImage::from_fn(width, height, |x, y| {
-        let board = x / 16;
-        let tone = noise(board as f32 * 7.3, 3.1, 4096, 11);
-        let (u, v) = (x as f32 / 16.0, y as f32 / height as f32);
-        let grain = turbulence(u * 6.0, v * 4.0 + board as f32 * 13.7, 4096, 29 + board);
-        let seam = if x % 16 == 0 { 0.82 } else { 1.0 };
-        let colour = mix(light, dark, 0.25 + 0.45 * tone + 0.6 * (grain - 0.5));
-        rgb(colour.map(|c| c * seam))
+        let across = (x as f32 + 0.5) / width as f32;
+        let up = 1.0 - (y as f32 + 0.5) / height as f32;
+        let from_middle = (across - 0.5) * width as f32 / height as f32;
+        let sky = if up > 0.45 {
+            mix([150.0, 44.0, 118.0], [16.0, 18.0, 62.0], (up - 0.45) / 0.5)
+        } else {
+            mix([246.0, 128.0, 62.0], [150.0, 44.0, 118.0], up / 0.45)
+        };
+        let sun = glam::Vec2::new(from_middle, up - 0.40).length();
+        // The sun in stripes, wider towards the horizon.
+        let stripe = (up * 26.0).fract() < 0.25 + 0.9 * (0.62 - up);
+        let mut color = sky;
+        if sun < 0.27 && !stripe {
+            color = mix(
+                [252.0, 214.0, 96.0],
+                [250.0, 120.0, 70.0],
+                (0.67 - up) / 0.5,
+            );
+        }
+        for (far, tone) in [(0.0_f32, [92.0, 30.0, 92.0]), (1.0, [40.0, 16.0, 58.0])] {
+            let crest = turbulence(across * (14.0 + 10.0 * far), 3.7 + far, 4096, 9);
+            if up < 0.30 - 0.12 * far + 0.34 * (crest - 0.5) {
+                color = tone;
+            }
+        }
+        rgb(color)
     })
 }
 
@@ -63,7 +98,7 @@ pub fn pin(height_m: f32) -> RgbImage {
     let rows = 256;
     RgbImage::from_fn(32, rows, |_, y| {
         let h = (1.0 - (y as f32 + 0.5) / rows as f32) * height_m;
-        let red = (0.2290..0.2410).contains(&h) || (0.2500..0.2620).contains(&h);
+        let red = BANDS.iter().any(|(low, high)| (*low..*high).contains(&h));
         if red {
             Rgb([190, 24, 32])
         } else if h < 0.008 {
@@ -74,33 +109,49 @@ pub fn pin(height_m: f32) -> RgbImage {
     })
 }
 
+/// Middles of the finger holes and of the thumb hole on a ball, as (longitude, latitude) [rad], longitude 0 at +x: where the game
+/// has the hand's fingers (`game::HALF_SPAN`), and 24 mm between the two fingers.
+pub const HOLES: [(f32, f32); 3] = [
+    (-0.12, game::HALF_SPAN as f32),
+    (0.12, game::HALF_SPAN as f32),
+    (0.0, -(game::HALF_SPAN as f32)),
+];
+
+/// Radius of a finger hole, in radii of the ball: 23 mm across.
+pub const HOLE_RADIUS: f32 = 0.105;
+
+/// The point of a ball of radius 1 at a longitude and a latitude [rad].
+pub fn on_ball((longitude, latitude): (f32, f32)) -> glam::Vec3 {
+    let glam::Vec2 { x: cy, y: sy } = glam::Vec2::from_angle(latitude);
+    let glam::Vec2 { x: cx, y: sx } = glam::Vec2::from_angle(longitude);
+    glam::Vec3::new(cy * cx, sy, -cy * sx)
+}
+
 /// A marbled ball: veins of `vein` in `base`, and three dark finger holes, so that rotation can be seen.
 pub fn ball(base: [f32; 3], vein: [f32; 3], seed: u32) -> RgbImage {
-    let (width, height) = (256, 128);
-    // Two fingers and the thumb, as (longitude, latitude) in radians.
-    let holes = [(-0.13_f32, 1.05_f32), (0.13, 1.05), (0.0, 0.62)];
-    let point = |longitude: f32, latitude: f32| {
-        let glam::Vec2 { x: cy, y: sy } = glam::Vec2::from_angle(latitude);
-        let glam::Vec2 { x: cx, y: sx } = glam::Vec2::from_angle(longitude);
-        glam::Vec3::new(cy * cx, sy, cy * sx)
-    };
+    let (width, height) = (512, 256);
+    let holes = HOLES.map(on_ball);
     RgbImage::from_fn(width, height, |x, y| {
-        let longitude = ((x as f32 + 0.5) / width as f32 - 0.5) * std::f32::consts::TAU;
+        let round = (x as f32 + 0.5) / width as f32;
+        let longitude = round * std::f32::consts::TAU;
         let latitude = (0.5 - (y as f32 + 0.5) / height as f32) * std::f32::consts::PI;
-        let here = point(longitude, latitude);
-        let in_hole = holes
+        let here = on_ball((longitude, latitude));
+        let nearest = holes
             .iter()
-            .any(|&(lon, lat)| here.distance(point(lon, lat)) < 0.105);
-        if in_hole {
-            return Rgb([16, 14, 14]);
+            .map(|hole| here.distance(*hole))
+            .fold(f32::INFINITY, f32::min);
+        if nearest < HOLE_RADIUS {
+            return Rgb([12, 11, 11]);
         }
+        // The holes' bevelled rims are worn a little paler.
+        let rim = (1.0 - (nearest - HOLE_RADIUS) / 0.02).clamp(0.0, 1.0);
         let (u, v) = (
             x as f32 / width as f32 * 8.0,
             y as f32 / height as f32 * 4.0,
         );
         let swirl = turbulence(u, v, 8, seed) * 5.0;
         let t = (turbulence(u, v + swirl, 8, seed + 17) * 2.6 - 0.8).clamp(0.0, 1.0);
-        rgb(mix(base, vein, t))
+        rgb(mix(mix(base, vein, t), [200.0; 3], 0.35 * rim))
     })
 }
 
@@ -114,6 +165,21 @@ mod tests {
             let y = y as f32 * 0.37;
             assert_eq!(noise(0.0, y, 8, 3), noise(8.0, y, 8, 3));
         }
+    }
+
+    #[test]
+    fn grain_repeats_along_and_across_and_is_grey_about_a_half() {
+        let image = grain();
+        let linear = |x: u32, y: u32| (f32::from(image.get_pixel(x, y).0[0]) / 255.0).powf(2.2);
+        let step = |a: f32, b: f32| (a - b).abs();
+        let (mut seam, mut inside, mut sum) = (0.0, 0.0, 0.0);
+        for i in 0..256 {
+            seam += step(linear(i, 0), linear(i, 255)) + step(linear(0, i), linear(255, i));
+            inside += step(linear(i, 100), linear(i, 101)) + step(linear(100, i), linear(101, i));
+            sum += linear(i, (i * 7) % 256);
+        }
+        assert!(seam < 1.6 * inside, "{seam} {inside}");
+        assert!((sum / 256.0 - 0.5).abs() < 0.06, "{}", sum / 256.0);
     }
 
     #[test]

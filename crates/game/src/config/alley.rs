@@ -80,6 +80,8 @@ pub struct RoomConfig {
     pub approach_length_m: f64,
     /// Width of the foul line [m].
     pub foul_line_width_m: f64,
+    /// From the middle of one lane to that of the next, for the picture [m].
+    pub lane_pitch_m: f64,
 }
 
 /// Where the tracking space lies at first.

@@ -299,7 +299,10 @@ fn a_scene_that_is_not_there_is_refused_with_those_that_are() {
             message.starts_with(&format!("--scene {scene}: ")),
             "{message}"
         );
-        assert!(message.ends_with("there are: alley"), "{message}");
+        assert!(
+            message.ends_with("there are: alley, plain-1996, test"),
+            "{message}"
+        );
     }
 }
 

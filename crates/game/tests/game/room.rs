@@ -180,9 +180,9 @@ fn walls_stop_a_walk_and_the_lane_does_not() {
     let mut player = Player::new(conditions(&[]), 1);
     player.head.rotation = DQuat::from_rotation_y(std::f64::consts::FRAC_PI_2);
     player.input.walk_forward = true;
-    player.wait(4.0);
+    player.wait(5.0);
     let head = player.game.head_pose_world().unwrap().position;
-    assert!((head.x + 2.2).abs() < 1e-9, "{head}");
+    assert!((head.x + 4.3).abs() < 1e-9, "{head}");
     player.head.rotation = DQuat::IDENTITY;
     player.wait(25.0);
     let head = player.game.head_pose_world().unwrap().position;

@@ -6,8 +6,42 @@ use crate::config::Config;
 /// Lane, gutters, kickbacks and pit.
 pub(super) fn building(config: &Config) -> Result<(), Invalid> {
     lane(config)?;
+    markings(config)?;
     gutter(config)?;
     pit(config)
+}
+
+/// Boards that the rule book counts across a lane.
+const RULE_BOARDS: u32 = 39;
+
+fn markings(config: &Config) -> Result<(), Invalid> {
+    let paint = &config.markings;
+    let boards = [
+        ("arrow_boards", &paint.arrow_boards),
+        ("lane_dot_boards", &paint.lane_dot_boards),
+        ("approach_dot_boards", &paint.approach_dot_boards),
+    ];
+    for (key, boards) in boards {
+        for board in boards {
+            let range = (key, f64::from(*board), 1.0, f64::from(RULE_BOARDS));
+            limited("markings", range, &[])?;
+        }
+    }
+    relation(
+        "markings",
+        "arrow_z_m",
+        &["markings.arrow_boards"],
+        paint.arrow_z_m.len() == paint.arrow_boards.len(),
+        "must have as many numbers as markings.arrow_boards",
+    )?;
+    for z in &paint.arrow_z_m {
+        limited("markings", ("arrow_z_m", *z, -60.0, 0.0), &[])?;
+    }
+    for z in &paint.approach_dots_z_m {
+        limited("markings", ("approach_dots_z_m", *z, 0.0, 30.0), &[])?;
+    }
+    let row = ("lane_dots_z_m", paint.lane_dots_z_m, -60.0, 0.0);
+    limited("markings", row, &[])
 }
 
 fn lane(config: &Config) -> Result<(), Invalid> {
@@ -95,6 +129,12 @@ pub(super) fn room(config: &Config) -> Result<(), Invalid> {
     limited(
         "room",
         ("half_width_m", room.half_width_m, beside, 20.0),
+        &["lane.width_m", "gutter.width_m"],
+    )?;
+    let lane = config.lane.width_m + 2.0 * config.gutter.width_m;
+    limited(
+        "room",
+        ("lane_pitch_m", room.lane_pitch_m, lane, 20.0),
         &["lane.width_m", "gutter.width_m"],
     )?;
     limited(
