@@ -1,5 +1,6 @@
 //! Appends to a journal from a thread of its own, so that no frame waits for a disk.
 
+use std::convert::Infallible;
 use std::fs::{File, OpenOptions};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -30,8 +31,8 @@ pub struct Appender<T> {
 #[derive(Debug)]
 enum Order<T> {
     Append(T),
-    /// Make everything so far outlast a power cut, then answer who waits.
-    Sync(Option<Sender<()>>),
+    /// Make everything so far outlast a power cut, then let go of who waits.
+    Sync(Option<Sender<Infallible>>),
 }
 
 impl<T: Serialize + Send + 'static> Appender<T> {
@@ -57,6 +58,7 @@ impl<T: Serialize + Send + 'static> Appender<T> {
             line: 0,
             check: Check::of_schema(SCHEMA),
             unsynced_since: None,
+            waiting: None,
             failure: Arc::clone(&failure),
         };
         let thread = std::thread::Builder::new()
@@ -85,7 +87,7 @@ impl<T: Serialize + Send + 'static> Appender<T> {
     pub fn sync(&mut self) -> Result<(), JournalError> {
         let (done, wait) = channel();
         self.order(Order::Sync(Some(done)))?;
-        // The thread gives up without an answer after a failure, which is told next.
+        // Nothing is ever sent: this ends when the thread lets go, after its failure, if any, can be read.
         let _ = wait.recv();
         self.failure()
     }
@@ -132,6 +134,8 @@ struct Writer {
     check: Check,
     /// When the oldest line that is not yet synced was written.
     unsynced_since: Option<Instant>,
+    /// Who waits for the sync at hand; kept here so that a failure is told before they go on.
+    waiting: Option<Sender<Infallible>>,
     failure: Arc<OnceLock<JournalError>>,
 }
 
@@ -169,9 +173,9 @@ impl Writer {
             match order {
                 Order::Append(entry) => self.append(&entry)?,
                 Order::Sync(done) => {
+                    self.waiting = done;
                     self.sync()?;
-                    // Who asked may have gone.
-                    let _ = done.map(|done| done.send(()));
+                    self.waiting = None;
                 }
             }
             if self.time_to_sync().is_zero() {
