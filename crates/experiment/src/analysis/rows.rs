@@ -45,6 +45,28 @@ impl Sums {
     }
 }
 
+/// Adds the rows, each times its residual, to the gradient, and their squares, each times its weight, to the information.
+#[inline]
+fn add_weighted<const N: usize>(rows: [&[f64]; N], each: [(f64, f64); N], sums: &mut Sums) {
+    let columns = sums.gradient.len();
+    let rows = rows.map(|row| &row[..columns]);
+    for j in 0..columns {
+        let weighted: [f64; N] = std::array::from_fn(|k| each[k].1 * rows[k][j]);
+        for k in 0..N {
+            sums.gradient[j] += each[k].0 * rows[k][j];
+        }
+        let target = &mut sums.information[j * columns + j..(j + 1) * columns];
+        let parts = rows.map(|row| &row[j..]);
+        for (l, sum) in target.iter_mut().enumerate() {
+            let mut more = 0.0;
+            for k in 0..N {
+                more += weighted[k] * parts[k][l];
+            }
+            *sum += more;
+        }
+    }
+}
+
 fn add_to(sums: &mut [f64], others: &[f64]) {
     for (sum, other) in sums.iter_mut().zip(others) {
         *sum += other;
@@ -129,14 +151,13 @@ impl Rows {
     pub fn sums(&self, beta: &[f64], sums: &mut Sums) {
         sums.reset(self.columns);
         self.in_pieces(sums, |range, sums| {
-            for i in range {
-                let row = self.row(i);
-                let eta = dot(row, beta);
+            self.add_rows(range, sums, |i, sums| {
+                let eta = dot(self.row(i), beta);
                 let at = chance(eta);
                 sums.kernel += self.high[i] * eta - self.asked[i] * at.log_sum;
                 let residual = self.high[i] - self.asked[i] * at.p;
-                self.add_row(row, residual, self.asked[i] * at.spread, sums);
-            }
+                (residual, self.asked[i] * at.spread)
+            });
         });
     }
 
@@ -147,25 +168,33 @@ impl Rows {
     pub fn first_cycle(&self, sums: &mut Sums) {
         sums.reset(self.columns);
         self.in_pieces(sums, |range, sums| {
-            for i in range {
+            self.add_rows(range, sums, |i, _| {
                 let (y, n) = (self.high[i], self.asked[i]);
                 let p = (y + 0.5) / (n + 1.0);
                 let weight = n * p * (1.0 - p);
-                let working = weight * libm::log(p / (1.0 - p)) + y - n * p;
-                self.add_row(self.row(i), working, weight, sums);
-            }
+                (weight * libm::log(p / (1.0 - p)) + y - n * p, weight)
+            });
         });
     }
 
-    #[inline]
-    fn add_row(&self, row: &[f64], residual: f64, weight: f64, sums: &mut Sums) {
-        let rows = sums.information.chunks_exact_mut(self.columns.max(1));
-        for (j, (target, gradient)) in rows.zip(&mut sums.gradient).enumerate() {
-            *gradient += residual * row[j];
-            let weighted = weight * row[j];
-            for (sum, x) in target[j..].iter_mut().zip(&row[j..]) {
-                *sum += weighted * x;
-            }
+    /// Adds these rows to gradient and information, with the residual and weight that `of` gives for each.
+    ///
+    /// Four rows at a time, so that each sum is loaded and stored once for them.
+    fn add_rows(
+        &self,
+        range: Range<usize>,
+        sums: &mut Sums,
+        mut of: impl FnMut(usize, &mut Sums) -> (f64, f64),
+    ) {
+        let fours = range.start..range.end - range.len() % 4;
+        for first in fours.clone().step_by(4) {
+            let each = [0, 1, 2, 3].map(|k| of(first + k, sums));
+            let rows = [0, 1, 2, 3].map(|k| self.row(first + k));
+            add_weighted(rows, each, sums);
+        }
+        for i in fours.end..range.end {
+            let each = [of(i, sums)];
+            add_weighted([self.row(i)], each, sums);
         }
     }
 
