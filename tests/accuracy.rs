@@ -110,6 +110,8 @@ fn errors_fall_along_the_other_dials_or_the_report_says_why_not() {
         "precision",
         "rolling",
         "bouncing",
+        "response",
+        "666",
         "elastic-666",
     ] {
         assert_eq!(complaints(&measured(dial)), Vec::<String>::new(), "{dial}");

@@ -235,7 +235,7 @@ impl Report {
             self.simulating > BLAMED_SHARE * budget || self.simulating > self.drawing;
         if !is_simulation {
             return Some(format!(
-                "{held} drawing takes {:.1} ms;\na smaller window would take less",
+                "{held} drawing takes {:.1} ms;\nshows.materials=false or a smaller window would take less",
                 self.drawing
             ));
         }
@@ -320,7 +320,7 @@ mod tests {
         );
         let drawn = report(40.0, 2.0, 37.0).warning().expect("as slow");
         assert!(
-            drawn.contains("drawing takes 37.0 ms") && drawn.contains("smaller window"),
+            drawn.contains("drawing takes 37.0 ms") && drawn.contains("shows.materials=false"),
             "{drawn}"
         );
         // The picture waits for the display, so that it looks dearer than it is.
