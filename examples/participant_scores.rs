@@ -41,12 +41,14 @@ fn bowl(conditions: &Conditions, button: Button, count: u64) -> Result<String> {
             seed,
             Velocities::Measured,
             &[button],
-            |event| {
-                if let EventKind::Rolled { roll, ball, .. } = &event.kind {
-                    balls += 1;
-                    empty += u32::from(roll.pins() == 0);
-                    empty_first += u32::from(*ball == 1 && roll.pins() == 0);
-                    strikes += u32::from(*ball == 1 && roll.pins() == 10);
+            |game| {
+                for event in game.events() {
+                    if let EventKind::Rolled { roll, ball, .. } = &event.kind {
+                        balls += 1;
+                        empty += u32::from(roll.pins() == 0);
+                        empty_first += u32::from(*ball == 1 && roll.pins() == 0);
+                        strikes += u32::from(*ball == 1 && roll.pins() == 10);
+                    }
                 }
             },
         )?;

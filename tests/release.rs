@@ -9,9 +9,11 @@ fn first_release(velocities: Velocities, seed: u64) -> Release {
     let config = Path::new(env!("CARGO_MANIFEST_DIR")).join("config");
     let conditions = Conditions::load(&config, "alley", &[]).expect("the project's configuration");
     let mut first = None;
-    rehearse(&conditions, 1, seed, velocities, &[Button::Red], |event| {
-        if let EventKind::Released(release) = &event.kind {
-            first.get_or_insert(*release);
+    rehearse(&conditions, 1, seed, velocities, &[Button::Red], |game| {
+        for event in game.events() {
+            if let EventKind::Released(release) = &event.kind {
+                first.get_or_insert(*release);
+            }
         }
     })
     .expect("a game");

@@ -371,6 +371,15 @@ fn seated(name: &str) -> (Study, ParticipantId, Session) {
 }
 
 #[test]
+fn no_throw_is_shown_again_in_a_study() {
+    let (_, _, session) = seated("no-replay");
+    assert!(!session.game().config().shows.replay);
+    let config = Path::new(env!("CARGO_MANIFEST_DIR")).join("config");
+    let play = game::Conditions::load(&config, "alley", &[]).expect("the shipped settings");
+    assert!(play.lobby.shows.replay, "what play shows by default");
+}
+
+#[test]
 fn the_panel_is_seen_where_it_is_pointed_at() {
     let (_, _, mut session) = seated("study-seen");
     let mut panel = Panel::new(AnsweredIn::Headset);

@@ -131,11 +131,11 @@ pub enum Command {
     /// strike-map.svg. The same arguments give the same map. docs/strike-map.md compares maps with
     /// what is published.
     StrikeMap(StrikeMapArguments),
-    /// Show what a scene calls for, and what each effect costs.
+    /// Show what a scene calls for and shows, and what each effect costs.
     ///
     /// Prints the stages that a step of the scene runs with the effects that act in each, and for
     /// every effect how often it acts in a step, its share of the step's time, and the time with and
-    /// without it.
+    /// without it; then the same of everything that is seen, and of sound.
     Effects(EffectsArguments),
     /// Draw a scene from six places, for both eyes.
     ///
@@ -341,6 +341,26 @@ pub struct EffectsArguments {
     /// Change one setting, as in `bowling play`; may be given several times.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub settings: Vec<String>,
+
+    /// What to measure; several with commas between.
+    #[arg(
+        long,
+        value_name = "WHAT",
+        value_delimiter = ',',
+        default_value = "physics,pictures,sound"
+    )]
+    pub of: Vec<EffectsOf>,
+}
+
+/// What `bowling effects` measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum EffectsOf {
+    /// What the steps compute.
+    Physics,
+    /// What is seen.
+    Pictures,
+    /// What is heard.
+    Sound,
 }
 
 /// Arguments of `bowling look`.

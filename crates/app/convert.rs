@@ -3,6 +3,7 @@
 mod board;
 mod eyes;
 mod light;
+mod screen;
 mod shape;
 mod stock;
 
@@ -27,6 +28,7 @@ pub fn scene<'a>(
 ) -> Scene {
     let visible: Vec<Visible> = visible.into_iter().copied().collect();
     let mut instances = stock.scenery.clone();
+    instances.extend(stock.screen_instance());
     for thing in &visible {
         match thing.model {
             Model::Hand => instances.push(hand_instance(thing, &visible, stock, hand)),

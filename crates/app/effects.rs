@@ -1,6 +1,7 @@
-//! `bowling effects`: what a scene calls for, and what each effect costs.
+//! `bowling effects`: what a scene calls for and shows, and what each effect costs.
 
 mod measure;
+mod shown;
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -9,35 +10,50 @@ use anyhow::{Context, Result};
 use game::{Config, EffectName};
 use physics::{Effect, World};
 
-use crate::args::EffectsArguments;
+use crate::args::{EffectsArguments, EffectsOf};
 use measure::{Bench, Cost};
+use shown::Shown;
 
-/// Prints the plan of the scene, then the table of its effects.
+/// Prints the plan of the scene with the table of its effects, then what its pictures and its sound take.
 ///
 /// # Errors
 /// When the scene's settings cannot be used, or the output not be written.
 pub fn effects(arguments: &EffectsArguments, root: &Path) -> Result<()> {
+    let mut output = io::stdout().lock();
+    let mut write = |text: &str| -> Result<()> {
+        writeln!(output, "{text}").context("the table cannot be written")?;
+        output.flush().context("the table cannot be written")
+    };
     let folder = root.join("config");
     let config = Config::load(&folder, &arguments.scene, None, &arguments.settings)?;
-    let bench = Bench::new(&config, arguments.throws)?;
-    let unwritten = "the table cannot be written";
-    let mut output = io::stdout().lock();
-    let plan = plan(&arguments.scene, bench.world());
-    output.write_all(plan.as_bytes()).context(unwritten)?;
-    output.flush().context(unwritten)?;
-    writeln!(output, "\n{HEAD}").context(unwritten)?;
-    for effect in Effect::ALL {
-        let row = row(&config, &bench, effect)?;
-        writeln!(output, "{row}").context(unwritten)?;
+    if arguments.of.contains(&EffectsOf::Physics) {
+        let bench = Bench::new(&config, arguments.throws)?;
+        write(&plan(&arguments.scene, bench.world()))?;
+        write(HEAD)?;
+        for effect in Effect::ALL {
+            write(&row(&config, &bench, effect)?)?;
+        }
+        write(LEGEND)?;
     }
-    writeln!(output, "\n{LEGEND}").context(unwritten)
+    let shown = Shown::new(root, &arguments.scene, &arguments.settings);
+    if arguments.of.contains(&EffectsOf::Pictures) {
+        shown.pictures(&mut write)?;
+    }
+    if arguments.of.contains(&EffectsOf::Sound) {
+        write(SOUND)?;
+        write(&shown.sound()?)?;
+    }
+    Ok(())
 }
 
 const HEAD: &str = "\
 effect              in the plan   acts  step with  without   share   throw with  without
                                  /step         us       us       %         ms/s     ms/s";
 
-const LEGEND: &str = "\
+const SOUND: &str = "
+heard               in scene    with [ms/s]  without   of one core, for each second of a frame that the scripted participant bowls";
+
+const LEGEND: &str = "
 step    the same states of several throws, some steps from each: with and without the effect, all else as the scene has it
 throw   whole throws of 4 s per simulated second of one core; without an effect other things happen, so it may well be dearer
 share   of the step with the effect; a few percent are the clock's noise, and what is put somewhere is awake, so that

@@ -27,6 +27,7 @@ use renderer::Renderer;
 use renderer::headset::{HeadsetError, HeadsetSession, HeadsetSettings, Note};
 use serde_json::json;
 
+use crate::again::Again;
 use crate::convert::{self, Stock};
 use crate::devices::headset::Participant;
 use crate::panel::{Panel, PanelStock};
@@ -86,6 +87,7 @@ pub fn run(
         beat_ms: AtomicU64::new(0),
         began: Instant::now(),
         left_eye: Mutex::new(None),
+        again: Mutex::new(None),
         keys: Default::default(),
         stop: Arc::clone(&stop),
     });
@@ -98,6 +100,7 @@ pub fn run(
         throws: Throws::default(),
         attention: Attention::new(),
         fading: Fading::new(config.hand.lost_grip_s),
+        again: Again::of(&config),
         ears,
         refusal: String::new(),
         config: config.clone(),
@@ -148,7 +151,8 @@ impl Stage {
         let headset = HeadsetSession::open(settings)?;
         let mut renderer = Renderer::new(headset.gpu(), convert::settings(&config.shows))
             .context("cannot draw for the headset")?;
-        let stock = Stock::load(&mut renderer, root, config)?;
+        let mut stock = Stock::load(&mut renderer, root, config)?;
+        stock.add_screen(&mut renderer, root, config)?;
         let panel = PanelStock::new(headset.gpu(), &mut renderer)?;
         Ok(Self {
             renderer,
@@ -169,6 +173,7 @@ struct Player {
     /// What a study asks in the room.
     panel: Panel,
     times: FrameTimes,
+    again: Option<Again>,
     ears: Ears,
     /// What the hands did around each throw.
     throws: Throws,
@@ -284,7 +289,7 @@ impl Player {
         let is_here = self.attention.is_here(headset.focus());
         let at = frame.display_time_ns();
         let (participant, panel, keys) = (&mut self.participant, &mut self.panel, &self.shared);
-        let (fading, ears) = (&mut self.fading, &mut self.ears);
+        let (fading, ears, again) = (&mut self.fading, &mut self.ears, &mut self.again);
         let played = self.shared.with(|session| {
             let mut input = if is_here {
                 let is_holding = session.game().held().is_some();
@@ -302,6 +307,12 @@ impl Player {
             let game = session.game();
             ears.notice(game);
             ears.hear(game);
+            let moment = again.as_mut().and_then(|again| {
+                again.notice(game);
+                again.at(game.time())
+            });
+            stage.stock.show_again(moment.clone())?;
+            keys.set_again(moment);
             let visible = game.visible_at(participant.share());
             let scores = convert::Scores::of(game);
             stage.stock.show_scores(&mut stage.renderer, &scores)?;

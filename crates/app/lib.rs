@@ -4,6 +4,7 @@
 //! [`shot`], [`strike_map`], [`effects`](mod@effects), [`look`](mod@look), [`accuracy`](mod@accuracy) and [`compare`] are the commands; a [`session::Session`] takes one input per displayed frame from any device.
 
 pub mod accuracy;
+pub mod again;
 pub mod analyse;
 pub mod args;
 pub mod boundary;

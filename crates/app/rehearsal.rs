@@ -1,7 +1,7 @@
 //! Whole scripted games with nothing recorded: for the benchmark, the score statistics and tests.
 
 use anyhow::{Context, Result, bail};
-use game::{Button, Conditions, Event, Game};
+use game::{Button, Conditions, Game};
 
 use crate::boundary::Boundary;
 use crate::devices::Device;
@@ -16,7 +16,7 @@ pub fn patience(frames: u32, games: usize) -> f64 {
     STUCK_AFTER * f64::from(2 * frames + 2) * games as f64
 }
 
-/// Plays `games` one after the other and returns the game as it ends; `witness` sees every event.
+/// Plays `games` one after the other and returns the game as it ends; `witness` sees it after each input.
 ///
 /// # Errors
 /// When the settings make no game, or the participant cannot finish one with them.
@@ -26,7 +26,7 @@ pub fn rehearse(
     seed: u64,
     velocities: Velocities,
     games: &[Button],
-    mut witness: impl FnMut(&Event),
+    mut witness: impl FnMut(&Game),
 ) -> Result<Game> {
     let mut game = Game::new(conditions.clone(), frames).context("cannot set up the alley")?;
     let mut script = Script::new(&conditions.lobby, seed, velocities, games);
@@ -34,7 +34,7 @@ pub fn rehearse(
     while !script.is_done() {
         let input = boundary.admit(script.next(&game));
         game.step(&input);
-        game.events().iter().for_each(&mut witness);
+        witness(&game);
         if game.time() > patience(frames, games.len()) {
             bail!(
                 "the scripted participant got stuck with seed {seed}: it does not finish a game with these settings"

@@ -180,7 +180,7 @@ pub fn meshes(config: &Config) -> Vec<(Surface, Mesh)> {
     meshes
 }
 
-pub use furnishings::{HouseBall, house_balls};
+pub use furnishings::{HouseBall, house_balls, screen_mesh};
 pub use markings::pin_spots;
 pub use neighbours::{meshes as neighbour_meshes, middles as neighbour_middles};
 

@@ -1,9 +1,9 @@
 //! From the game's contacts to what is heard: on the card while somebody plays, and in the videos afterwards.
 //!
-//! The sound listens to [`Game::contacts`] and [`Game::rolling`] alone, which come from the physics. Where a scene does not list
+//! The sound listens to [`Game::contacts`] and [`Game::rolling`] alone, which come from the physics. Where a scene shows no
 //! `sound` nothing of this is built: no mixer, no thread, no list of events.
 
-use game::{Config, Game, Model, Phase, SceneEffect};
+use game::{Config, Game, Model, Phase};
 use glam::DVec3;
 use serde_json::json;
 use sound::live::Live;
@@ -19,10 +19,10 @@ const FADE_S: f64 = 0.005;
 /// Height above the deck at which the pinsetter's machine is heard [m].
 const MACHINE_HEIGHT: f64 = 1.0;
 
-/// How a scene sounds; `None` where it does not list `sound`.
+/// How a scene sounds; `None` where it shows no `sound`.
 pub fn settings(config: &Config) -> Option<Settings> {
     let sound = &config.sound;
-    config.scene.lists(SceneEffect::Sound).then(|| Settings {
+    config.shows.sound.then(|| Settings {
         full_scale_pa: sound.full_scale_pa,
         room: Some(Room {
             size_m: DVec3::new(sound.hall_width_m, sound.hall_height_m, sound.hall_length_m),
@@ -72,9 +72,9 @@ pub struct Reporter {
 }
 
 impl Reporter {
-    /// A reporter of a scene; `None` where it does not list `sound`.
+    /// A reporter of a scene; `None` where it shows no `sound`.
     pub fn of(config: &Config) -> Option<Self> {
-        config.scene.lists(SceneEffect::Sound).then(|| Reporter {
+        config.shows.sound.then(|| Reporter {
             step_hz: config.physics.step_hz,
             machine: DVec3::new(0.0, MACHINE_HEIGHT, config.lane.deck_end_z_m),
             was_running: false,
@@ -130,7 +130,7 @@ pub struct Ears {
 }
 
 impl Ears {
-    /// Opens the card where the scene lists `sound`. Without a card there is silence, and no word about it: a game is not
+    /// Opens the card where the scene shows `sound`. Without a card there is silence, and no word about it: a game is not
     /// worth less for a machine without one.
     pub fn open(config: &Config) -> Self {
         let open = settings(config)
@@ -302,13 +302,13 @@ mod tests {
     }
 
     #[test]
-    fn a_scene_that_does_not_list_sound_builds_nothing() {
+    fn a_scene_without_sound_builds_nothing() {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("config");
         let load = |arguments: &[String]| {
             let conditions = game::Conditions::load(&folder, "alley", arguments);
             conditions.expect("the shipped configuration").lobby
         };
-        let without = load(&["scene.effects=[]".to_owned()]);
+        let without = load(&["shows.sound=false".to_owned()]);
         assert!(settings(&without).is_none() && Reporter::of(&without).is_none());
         assert!(Ears::open(&without).open.is_none());
         let with = load(&["sound.hall_width_m=12.0".to_owned()]);

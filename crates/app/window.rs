@@ -21,6 +21,7 @@ use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::window::{Window, WindowId};
 
+use crate::again::Again;
 use crate::choose::Choice;
 use crate::convert::{self, Stock};
 use crate::devices::desk::Desk;
@@ -143,6 +144,7 @@ struct Stage {
     keys: Keys,
     session: Session,
     ears: Ears,
+    again: Option<Again>,
     /// Up to when the alley has been simulated.
     simulated: Instant,
 }
@@ -175,7 +177,10 @@ impl Shell {
             .context("cannot draw into the window")?;
         let mut renderer = Renderer::new(&gpu, convert::settings(&setup.conditions.lobby.shows))
             .context("cannot draw")?;
-        let stock = Stock::load(&mut renderer, &self.root, &setup.conditions.lobby)?;
+        let config = &setup.conditions.lobby;
+        let mut stock = Stock::load(&mut renderer, &self.root, config)?;
+        stock.add_screen(&mut renderer, &self.root, config)?;
+        let again = Again::of(config);
         let overlay = Overlay::new(TextPainter::new(&gpu));
         let panel_stock = PanelStock::new(&gpu, &mut renderer)?;
         // Last: nothing is written before everything else works.
@@ -200,6 +205,7 @@ impl Shell {
             keys: Keys::default(),
             session,
             ears,
+            again,
             simulated,
         });
         Ok(())
@@ -223,6 +229,9 @@ impl Shell {
             stage.session.frame_watched(input, watch)?;
             stage.overlay.notice(stage.session.game());
             stage.ears.notice(stage.session.game());
+            if let Some(again) = &mut stage.again {
+                again.notice(stage.session.game());
+            }
         }
         stage.ears.hear(stage.session.game());
         stage.simulated += Duration::from_secs_f64(f64::from(count) * self.frame_s);
@@ -298,6 +307,9 @@ impl Stage {
         let visible = game.visible();
         self.stock
             .show_scores(&mut self.renderer, &convert::Scores::of(game))?;
+        let again = self.again.as_ref();
+        self.stock
+            .show_again(again.and_then(|again| again.at(game.time())))?;
         let mut scene = convert::scene(visible.iter(), &self.stock, convert::HandShape::of(game));
         let panel = self
             .panel_stock

@@ -14,6 +14,8 @@ use renderer::{
 
 use super::board::{Board, Scores};
 use super::light::{lamps, light};
+use super::screen::Screen;
+use crate::again::Moment;
 use crate::scenery::hand::{Fingers, hand};
 use crate::scenery::{self, mesh};
 use looks::{Looks, plain};
@@ -72,6 +74,7 @@ pub struct Stock {
     pub(super) enclosure: Option<Enclosure>,
     pub(super) shows: ShowsConfig,
     board: Option<Board>,
+    screen: Option<Screen>,
 }
 
 /// What a renderer has to be able to do for a scene.
@@ -133,7 +136,42 @@ impl Stock {
             enclosure: shows.ambient_occlusion.then(|| enclosure(config)),
             shows: shows.clone(),
             board,
+            screen: None,
         })
+    }
+
+    /// Adds the screen on which a throw can be watched again, where the scene shows one; for pictures of the moment.
+    ///
+    /// # Errors
+    /// As [`Stock::load`].
+    pub fn add_screen(
+        &mut self,
+        renderer: &mut Renderer,
+        root: &Path,
+        config: &Config,
+    ) -> Result<()> {
+        let shows = &config.shows;
+        // Without furnishings there is no screen, without materials no picture on it.
+        if shows.replay && shows.furnishings && shows.materials {
+            self.screen = Some(Screen::new(renderer, root, config)?);
+        }
+        Ok(())
+    }
+
+    /// Shows a moment of the last throw on that screen, or nothing.
+    ///
+    /// # Errors
+    /// When it cannot be drawn.
+    pub fn show_again(&mut self, moment: Option<Moment>) -> Result<()> {
+        match &mut self.screen {
+            Some(screen) => screen.show(moment),
+            None => Ok(()),
+        }
+    }
+
+    /// The screen, while it shows something.
+    pub(super) fn screen_instance(&self) -> Option<Instance> {
+        self.screen.as_ref().and_then(Screen::instance)
     }
 
     /// Shows the scores on the board over the lane, where the scene has one.

@@ -86,7 +86,8 @@ impl Mirror {
         let window = Arc::new(events.create_window(attributes)?);
         let (gpu, target) = WindowTarget::new(window, BackendChoice::Auto)?;
         let mut renderer = Renderer::new(&gpu, convert::settings(&self.config.shows))?;
-        let stock = Stock::load(&mut renderer, &self.root, &self.config)?;
+        let mut stock = Stock::load(&mut renderer, &self.root, &self.config)?;
+        stock.add_screen(&mut renderer, &self.root, &self.config)?;
         Ok(Stage {
             target,
             renderer,
@@ -113,6 +114,7 @@ impl Mirror {
             return Ok(());
         };
         stage.stock.show_scores(&mut stage.renderer, &scores)?;
+        stage.stock.show_again(self.shared.again())?;
         let scene = convert::scene(visible.iter(), &stage.stock, hand);
         stage
             .target

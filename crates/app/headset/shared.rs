@@ -8,6 +8,7 @@ use anyhow::Result;
 use game::Button;
 use renderer::View;
 
+use crate::again::Moment;
 use crate::session::Session;
 
 /// What the two threads share.
@@ -19,6 +20,8 @@ pub struct Shared {
     pub began: Instant,
     /// What the left eye saw last, world frame.
     pub left_eye: Mutex<Option<View>>,
+    /// What the screen over the lane shows again.
+    pub again: Mutex<Option<Moment>>,
     /// The experimenter's keys for Red and Blue: pressed since the last frame.
     pub keys: [AtomicBool; 2],
     pub stop: Arc<AtomicBool>,
@@ -43,6 +46,16 @@ impl Shared {
 
     pub fn take_press(&self, button: Button) -> bool {
         self.keys[button as usize].swap(false, Ordering::Relaxed)
+    }
+
+    /// Tells the mirror what the screen over the lane shows.
+    pub fn set_again(&self, moment: Option<Moment>) {
+        *self.again.lock().unwrap_or_else(PoisonError::into_inner) = moment;
+    }
+
+    pub fn again(&self) -> Option<Moment> {
+        let again = self.again.lock();
+        again.unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     pub fn left_eye(&self) -> Option<View> {

@@ -1,5 +1,6 @@
 //! What makes a hall an alley and takes no part in the game: seats, screens, a rack of house balls.
 
+use game::Config;
 use glam::{Affine3A, Quat, Vec2, Vec3};
 
 use super::mesh::{Mesh, drum};
@@ -11,6 +12,9 @@ const SCREEN_HEIGHT: f32 = 2.52;
 const SCREEN_Z: f32 = -0.9;
 /// How far it leans towards who looks up at it [rad].
 const SCREEN_LEAN: f32 = 0.17;
+
+/// How far before the screen lies what covers it [m].
+const COVER: f32 = 0.004;
 
 /// Depth of the rack of house balls [m], and its tiers [m].
 const SHELF_DEPTH: f32 = 0.26;
@@ -62,6 +66,14 @@ fn screen_place(middle: f32, plan: &Plan) -> Affine3A {
         Quat::from_rotation_x(SCREEN_LEAN),
         Vec3::new(middle, height, SCREEN_Z),
     )
+}
+
+/// What covers the screen over the own lane, its texture filling it once.
+pub fn screen_mesh(config: &Config) -> Mesh {
+    let cover = Affine3A::from_translation(Vec3::Z * COVER);
+    let mut mesh = Mesh::default();
+    mesh.append(&screen(), screen_place(0.0, &Plan::new(config)) * cover);
+    mesh
 }
 
 /// Facing +z, about its middle.
@@ -169,7 +181,7 @@ fn shelf(plan: &Plan) -> Mesh {
 }
 
 /// The balls on the rack beside the room; none where the scene has no furnishings.
-pub fn house_balls(config: &game::Config) -> Vec<HouseBall> {
+pub fn house_balls(config: &Config) -> Vec<HouseBall> {
     let plan = Plan::new(config);
     if !plan.has_furnishings {
         return Vec::new();

@@ -15,6 +15,8 @@ use crate::session::{Keep, Seat, Setup};
 
 /// The scene of every study.
 const SCENE: &str = "alley";
+/// Nobody sees a throw twice: whoever looks longer would be told more of what the conditions differ in.
+const NO_REPLAY: &str = "shows.replay=false";
 
 /// What a plan says of the session in `slot`.
 pub fn plan(study: &Study, slot: u32) -> course::Plan {
@@ -33,12 +35,10 @@ pub fn conditions(study: &Study, slot: u32, root: &Path) -> Result<Conditions> {
     let row = study.row(slot);
     let design = study.plan().design();
     let load = |colour: Option<Colour>| {
-        let settings: Vec<String> = colour
-            .map(|colour| row.settings(&design, colour))
-            .unwrap_or_default()
-            .into_iter()
-            .map(|(key, value)| format!("{key}={value}"))
-            .collect();
+        let varied = colour.map(|colour| row.settings(&design, colour));
+        let varied = varied.unwrap_or_default().into_iter();
+        let mut settings = vec![NO_REPLAY.to_owned()];
+        settings.extend(varied.map(|(key, value)| format!("{key}={value}")));
         Config::load(&root.join("config"), SCENE, None, &settings)
     };
     let first = study.plan().session.training_in_first_condition;

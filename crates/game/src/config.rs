@@ -9,9 +9,9 @@ pub(crate) mod coulomb;
 mod effects;
 mod layers;
 mod origins;
-mod scene;
 mod session;
 mod shows;
+mod sound;
 mod things;
 mod validate;
 mod wording;
@@ -25,12 +25,12 @@ pub use alley::{
 pub use coulomb::{CoulombConfig, PairConfig};
 pub use effects::{EffectName, OilConfig};
 pub use layers::{ConfigError, Layer};
-pub use scene::{SceneConfig, SceneEffect, SoundConfig};
 pub use session::{
     DisplayConfig, DisplayProfile, DisplayProfileName, ParticipantConfig, PinsetterConfig,
     RulesConfig, TrackingConfig,
 };
 pub use shows::{MarkingsConfig, ShowsConfig};
+pub use sound::SoundConfig;
 pub use things::{
     BallConfig, HandConfig, PinConfig, PinEllipsoidConfig, PinPartsConfig, ReleaseConfig,
     ReleaseFit, WalkingConfig,
@@ -88,9 +88,7 @@ pub struct Config {
     pub display: DisplayConfig,
     /// The scripted participant.
     pub participant: ParticipantConfig,
-    /// What is shown and heard.
-    pub scene: SceneConfig,
-    /// How it sounds.
+    /// How contacts sound.
     pub sound: SoundConfig,
 }
 

@@ -40,8 +40,8 @@ pub use config::{
     DisplayProfileName, EffectName, GutterConfig, HandConfig, KickbackConfig, LaneConfig, Layer,
     MarkingsConfig, ObjectShape, ObjectsConfig, OilConfig, PairConfig, ParticipantConfig,
     PhysicsConfig, PinConfig, PinEllipsoidConfig, PinPartsConfig, PinsetterConfig, PitConfig,
-    RackConfig, ReleaseConfig, ReleaseFit, ResponseModel, RoomConfig, RulesConfig, SceneConfig,
-    SceneEffect, ShowsConfig, SoundConfig, StartConfig, TrackingConfig, WalkingConfig,
+    RackConfig, ReleaseConfig, ReleaseFit, ResponseModel, RoomConfig, RulesConfig, ShowsConfig,
+    SoundConfig, StartConfig, TrackingConfig, WalkingConfig,
 };
 pub use contacts::{Contact, RollingBall};
 pub use event::{
@@ -138,7 +138,6 @@ fn differing(condition: &Config, lobby: &Config) -> Option<&'static str> {
         ("tracking", condition.tracking != lobby.tracking),
         ("display", condition.display != lobby.display),
         ("participant", condition.participant != lobby.participant),
-        ("scene", condition.scene != lobby.scene),
         ("sound", condition.sound != lobby.sound),
     ];
     once.into_iter()

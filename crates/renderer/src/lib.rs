@@ -29,6 +29,7 @@
 
 pub mod headset;
 
+mod canvas;
 mod error;
 mod eye_targets;
 mod gpu;
@@ -50,6 +51,7 @@ pub use egui;
 pub use glam;
 pub use image::RgbaImage;
 
+pub use canvas::Canvas;
 pub use error::RenderError;
 pub use eye_targets::EyeTargets;
 pub use gpu::{BackendChoice, Gpu};

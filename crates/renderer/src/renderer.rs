@@ -65,8 +65,8 @@ pub struct Renderer {
     textures: Vec<Texture>,
     /// Stands in where a material has no texture.
     white: Texture,
-    texture_layout: wgpu::BindGroupLayout,
-    sampler: wgpu::Sampler,
+    pub(crate) texture_layout: wgpu::BindGroupLayout,
+    pub(crate) sampler: wgpu::Sampler,
     /// The views' eyes, their mirror images, then the light's.
     eyes: wgpu::Buffer,
     lighting: wgpu::Buffer,

@@ -43,14 +43,39 @@ impl Texture {
             usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
             view_formats: &[],
         });
-        let view = texture.create_view(&Default::default());
-        let bind_group = bind_group(&gpu.device, layout, &view, sampler);
-        let texture = Self {
-            texture,
-            bind_group,
-        };
+        let texture = Self::bound(gpu, layout, sampler, texture);
         texture.write(gpu, image);
         Ok(texture)
+    }
+
+    /// What another picture can be drawn on; black at first, and without smaller copies.
+    pub fn canvas(
+        gpu: &Gpu,
+        layout: &wgpu::BindGroupLayout,
+        sampler: &wgpu::Sampler,
+        size: [u32; 2],
+    ) -> Self {
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT;
+        let texture = single(&gpu.device, "canvas", size, 1, FORMAT, usage);
+        Self::bound(gpu, layout, sampler, texture)
+    }
+
+    fn bound(
+        gpu: &Gpu,
+        layout: &wgpu::BindGroupLayout,
+        sampler: &wgpu::Sampler,
+        texture: wgpu::Texture,
+    ) -> Self {
+        let view = texture.create_view(&Default::default());
+        Self {
+            bind_group: bind_group(&gpu.device, layout, &view, sampler),
+            texture,
+        }
+    }
+
+    /// The whole of a texture without smaller copies.
+    pub fn view(&self) -> wgpu::TextureView {
+        self.texture.create_view(&Default::default())
     }
 
     /// Replaces the picture by another of the same size; `false`, and nothing done, if the size differs.

@@ -22,6 +22,10 @@ pub struct ShowsConfig {
     pub smooth_edges: bool,
     /// Round things of few corners.
     pub low_polygon: bool,
+    /// The last throw again, from behind the pins, on the screen over the lane.
+    pub replay: bool,
+    /// What contacts sound like, on the card and in videos.
+    pub sound: bool,
 }
 
 /// What is painted on lane and approach; boards are counted from the right edge, 39 to a lane.

@@ -60,8 +60,12 @@ impl Renderer {
     /// If a side is zero or larger than the device holds.
     pub fn add_texture(&mut self, image: &RgbaImage) -> Result<TextureId, RenderError> {
         let texture = self.upload(image)?;
+        Ok(self.take_texture(texture))
+    }
+
+    pub(crate) fn take_texture(&mut self, texture: Texture) -> TextureId {
         self.textures.push(texture);
-        Ok(TextureId(self.textures.len() as u32 - 1))
+        TextureId(self.textures.len() as u32 - 1)
     }
 
     /// Takes a texture from a PNG or JPEG file.

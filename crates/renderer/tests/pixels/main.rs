@@ -1,5 +1,7 @@
 //! What arrives in the pixels, on every driver that is installed.
 
+/// Textures that other pictures are drawn on.
+mod canvas;
 /// Vulkan and GL give the same picture, and each the same picture twice.
 mod drivers;
 /// The glossy floor, hidden sky, patterns, one colour a face.
