@@ -57,6 +57,53 @@ fn study_of_1997_comes_out_as_printed() {
     }
 }
 
+/// Sums and counts from the table, by hand: changed, held, subjects, high answers of six each.
+const CONDITIONS: [(&str, &str, u32, f64); 12] = [
+    ("elasticity", "F0 S0", 2, 1.0),
+    ("elasticity", "F0 S1", 1, 1.0),
+    ("elasticity", "F1 S0", 1, 3.0),
+    ("elasticity", "F1 S1", 2, 5.0),
+    ("friction", "E0 S0", 2, 1.0),
+    ("friction", "E0 S1", 1, 4.0),
+    ("friction", "E1 S0", 1, 0.0),
+    ("friction", "E1 S1", 2, 1.0),
+    ("shape", "E0 F0", 2, 4.0),
+    ("shape", "E0 F1", 1, 0.0),
+    ("shape", "E1 F0", 1, 0.0),
+    ("shape", "E1 F1", 2, 7.0),
+];
+
+#[test]
+fn answers_are_told_and_drawn_by_condition() {
+    let folder = fresh_folder("analyse-conditions");
+    let out = folder.to_str().unwrap();
+    let few = ["--randomisations", "100"];
+    let run = bowling(&[&["analyse", STUDY_OF_1997, "--out", out], &few[..]].concat());
+    assert!(run.status.success(), "{}", text(&run.stderr));
+    let report = std::fs::read_to_string(folder.join("report.json")).unwrap();
+    let report: Value = serde_json::from_str(&report).unwrap();
+    let told = report["answers_by_condition"].as_array().unwrap();
+    assert_eq!(told.len(), CONDITIONS.len());
+    for (one, (changed, held, subjects, high)) in told.iter().zip(CONDITIONS) {
+        assert_eq!(
+            (&one["changed"], &one["held"]),
+            (&changed.into(), &held.into())
+        );
+        assert_eq!(one["subjects"], subjects);
+        let mean = one["mean_share_of_high_answers"].as_f64().unwrap();
+        assert!(
+            (mean - high / 6.0 / f64::from(subjects)).abs() < 1e-12,
+            "{one}"
+        );
+    }
+    let drawn = std::fs::read_to_string(folder.join("answers.svg")).unwrap();
+    for (_, held, subjects, _) in CONDITIONS {
+        assert!(drawn.contains(&format!("{held} ({subjects})")), "{held}");
+    }
+    // 11 of 36 high answers.
+    assert!(drawn.contains("shape changed: 0.31"), "{drawn}");
+}
+
 #[test]
 fn same_input_gives_the_same_bytes() {
     let folders = ["analyse-once", "analyse-again"].map(fresh_folder);

@@ -4,7 +4,7 @@ use anyhow::Result;
 use experiment::analysis::behaviour::Behaviour;
 use experiment::analysis::exact;
 use experiment::analysis::noticed::Noticed;
-use experiment::analysis::study::Analysis;
+use experiment::analysis::study::{Analysis, Answers};
 use experiment::analysis::subjects::PARAMETERS;
 use experiment::analysis::tails;
 use plotters::coord::Shift;
@@ -17,6 +17,8 @@ type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// Height of a figure with values upwards [px], and its width.
 const UPRIGHT: (u32, u32) = (760, 340);
+/// The same with a place for each of twelve conditions.
+const WIDE: (u32, u32) = (900, 360);
 /// Width of the coefficients [px], and height of each of them.
 const ACROSS: u32 = 860;
 const ROW: u32 = 34;
@@ -29,14 +31,13 @@ const LONGEST: f64 = 4.0;
 /// When one cannot be drawn.
 pub fn figures(analysis: &Analysis) -> Result<Vec<(&'static str, String, String)>> {
     let mut figures = Vec::new();
-    let shares = analysis.shares();
-    if !shares.is_empty() {
-        let caption =
-            "Share of high answers of each subject, and the mean, by the parameter that changed.";
+    let conditions = analysis.answers();
+    if !conditions.is_empty() {
+        let caption = "Share of high answers of each subject by condition: the colour is the parameter that changed, below are the levels of the others; the line is the mean over all that changed it.";
         figures.push((
             "answers",
             caption.to_owned(),
-            svg_of(UPRIGHT, |area| answers(area, &shares))?,
+            svg_of(WIDE, |area| answers(area, &conditions))?,
         ));
     }
     let lines = coefficients(analysis);
@@ -113,33 +114,47 @@ fn upright<'a, 'b>(
     Ok(chart)
 }
 
-fn answers(area: &Area<'_>, shares: &[(usize, Vec<f64>)]) -> Result<()> {
+fn answers(area: &Area<'_>, conditions: &[Answers]) -> Result<()> {
     area.fill(&WHITE).map_err(failed)?;
-    let names: Vec<String> = shares
+    let names: Vec<String> = conditions
         .iter()
-        .map(|(i, s)| format!("{} ({})", PARAMETERS[*i], s.len()))
+        .map(|one| {
+            format!("{} ({})", one.held, one.shares.len())
+                .trim()
+                .to_owned()
+        })
         .collect();
-    let mut chart = upright(area, &names, -0.05..1.05, "share of high answers")?;
-    for (place, (_, values)) in shares.iter().enumerate() {
-        let colour = COLOURS[place];
-        let mut sorted = values.clone();
+    let (above, below) = area.split_vertically(24);
+    let mut chart = upright(&below, &names, -0.05..1.05, "share of high answers")?;
+    for (place, one) in conditions.iter().enumerate() {
+        let mut sorted = one.shares.clone();
         sorted.sort_by(f64::total_cmp);
         let spots = sorted.iter().enumerate().map(|(i, &share)| {
             // Equal answers side by side, in their order: no chance in a figure.
             let before = sorted[..i].iter().filter(|other| **other == share).count();
             let equal = sorted.iter().filter(|other| **other == share).count();
-            let step = (0.6 / equal as f64).min(0.06);
+            let step = (0.6 / equal as f64).min(0.16);
             let x = place as f64 + step * (before as f64 - 0.5 * (equal as f64 - 1.0));
-            Circle::new((x, share), 4, colour.mix(0.6).filled())
+            Circle::new((x, share), 4, COLOURS[one.change].mix(0.6).filled())
         });
         chart.draw_series(spots).map_err(failed)?;
-        let mean = values.iter().sum::<f64>() / values.len() as f64;
-        let (left, right) = (place as f64 - 0.3, place as f64 + 0.3);
+    }
+    for (change, parameter) in PARAMETERS.iter().enumerate() {
+        let places = (0..conditions.len()).filter(|&place| conditions[place].change == change);
+        let (Some(first), Some(last)) = (places.clone().min(), places.max()) else {
+            continue;
+        };
+        let shares = conditions[first..=last].iter().flat_map(|one| &one.shares);
+        let mean = shares.clone().sum::<f64>() / shares.count() as f64;
+        let ends = [(first as f64 - 0.4, mean), (last as f64 + 0.4, mean)];
+        let colour = COLOURS[change];
         chart
-            .draw_series([PathElement::new(
-                [(left, mean), (right, mean)],
-                colour.stroke_width(2),
-            )])
+            .draw_series([PathElement::new(ends, colour.stroke_width(2))])
+            .map_err(failed)?;
+        let style = ("sans-serif", 14).into_font().color(&colour);
+        let words = format!("{parameter} changed: {mean:.2}");
+        above
+            .draw(&Text::new(words, (70 + 200 * change as i32, 6), style))
             .map_err(failed)?;
     }
     Ok(())

@@ -13,7 +13,7 @@ use super::noticed::Noticed;
 use super::paired::{self, Paired};
 use super::randomisation::{Plan, Randomisation};
 use super::regression::Regression;
-use super::subjects::{PARAMETERS, Subjects};
+use super::subjects::{LEVELS, PARAMETERS, Subjects};
 use super::table::TableError;
 use super::{folder, json};
 
@@ -45,6 +45,24 @@ pub struct Analysis {
     pub paired: Vec<Paired>,
     /// What recordings say, by condition.
     pub behaviour: Vec<Behaviour>,
+}
+
+/// What the subjects of one condition answered.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Answers {
+    /// Index of the changed parameter in [`PARAMETERS`].
+    pub change: usize,
+    /// Levels of the other parameters, as in "F0 S1"; empty where a table does not say them.
+    pub held: String,
+    /// Share of high answers of each subject, in the order of the table; not empty.
+    pub shares: Vec<f64>,
+}
+
+impl Answers {
+    /// The mean share.
+    pub fn mean(&self) -> f64 {
+        self.shares.iter().sum::<f64>() / self.shares.len() as f64
+    }
 }
 
 impl Analysis {
@@ -86,17 +104,30 @@ impl Analysis {
         levels
     }
 
-    /// Mean share of high answers, and subjects, by changed parameter.
-    pub fn shares(&self) -> Vec<(usize, Vec<f64>)> {
-        let mut shares: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+    /// Share of high answers of each subject, by condition; where a table does not say the levels, by changed parameter.
+    pub fn answers(&self) -> Vec<Answers> {
+        let mut conditions: BTreeMap<(usize, String), Vec<f64>> = BTreeMap::new();
         for subject in &self.subjects.list {
             if let (Some(change), Some((y, n))) = (subject.change, subject.answers)
                 && n > 0.0
             {
-                shares.entry(change).or_default().push(y / n);
+                let others = (0..LEVELS.len()).filter(|&parameter| parameter != change);
+                let held = others.filter_map(|parameter| {
+                    let level = subject.levels[parameter]?;
+                    Some(format!("{}{level}", LEVELS[parameter]))
+                });
+                let held = held.collect::<Vec<_>>().join(" ");
+                conditions.entry((change, held)).or_default().push(y / n);
             }
         }
-        shares.into_iter().collect()
+        let answers = conditions
+            .into_iter()
+            .map(|((change, held), shares)| Answers {
+                change,
+                held,
+                shares,
+            });
+        answers.collect()
     }
 
     /// Every number.
@@ -107,15 +138,19 @@ impl Analysis {
         let percent = sickness
             .iter()
             .map(|&count| 100.0 * count as f64 / all.max(1) as f64);
-        let shares = self.shares().into_iter().map(|(change, shares)| {
-            let mean = shares.iter().sum::<f64>() / shares.len() as f64;
-            json!({"changed": PARAMETERS[change], "subjects": shares.len(), "mean_share_of_high_answers": mean})
+        let answers = self.answers().into_iter().map(|answers| {
+            json!({
+                "changed": PARAMETERS[answers.change],
+                "held": answers.held,
+                "subjects": answers.shares.len(),
+                "mean_share_of_high_answers": answers.mean(),
+            })
         });
         value["source"] = json!(self.source);
         value["table3_sickness"] =
             json!({"counts": sickness, "percent": percent.collect::<Vec<_>>()});
         value["table4_noticed"] = self.noticed.as_ref().map_or(Value::Null, Noticed::json);
-        value["shares"] = shares.collect();
+        value["answers_by_condition"] = answers.collect();
         value["randomisation"] = self
             .randomisation
             .as_ref()
