@@ -23,20 +23,32 @@ struct Row {
 
 /// What the board shows.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Scores([Row; 2]);
+pub struct Scores {
+    rows: [Row; 2],
+    /// Help that throws get [percent]; what is not studied must not be had unseen.
+    assist: u32,
+}
 
 impl Scores {
     /// The sheets of a game as they stand.
     pub fn of(game: &Game) -> Self {
-        Self(Button::BOTH.map(|button| {
+        let rows = Button::BOTH.map(|button| {
             let is_playing = game.playing() == Some(button);
             Row::of(button, game.score_sheet(button), is_playing)
-        }))
+        });
+        let share = game.config().release.assist_share;
+        Self {
+            rows,
+            assist: (100.0 * share).ceil() as u32,
+        }
     }
 
     /// Two games that have not begun.
     pub fn empty(frames: u32) -> Self {
-        Self(Button::BOTH.map(|button| Row::of(button, &ScoreSheet::new(frames), false)))
+        Self {
+            rows: Button::BOTH.map(|button| Row::of(button, &ScoreSheet::new(frames), false)),
+            assist: 0,
+        }
     }
 }
 
@@ -115,12 +127,23 @@ fn paint(painter: &mut TextPainter, scores: &Scores) -> Result<RgbaImage> {
     let image = painter.paint(width, height, GROUND, |ui| {
         let painter = ui.ctx().debug_painter();
         let half = 0.5 * height as f32;
-        for (row, top) in scores.0.iter().zip([0.0, half]) {
+        for (row, top) in scores.rows.iter().zip([0.0, half]) {
             let area = Rect::from_min_size(
                 Pos2::new(12.0, top + 10.0),
                 Vec2::new(width as f32 - 24.0, half - 20.0),
             );
             paint_row(&painter, row, area);
+        }
+        if scores.assist > 0 {
+            let text = format!("throws are helped: {} %", scores.assist);
+            let at = Pos2::new(0.5 * width as f32, half);
+            painter.text(
+                at,
+                Align2::CENTER_CENTER,
+                text,
+                FontId::proportional(18.0),
+                INK,
+            );
         }
     })?;
     Ok(image)

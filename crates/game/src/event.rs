@@ -36,6 +36,15 @@ pub struct ReleaseVelocity {
     pub angular: DVec3,
 }
 
+/// What a release was helped by.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Assist {
+    /// Share of its angle to the lane's axis that it was to lose.
+    pub share: f64,
+    /// How far it was turned, to the left as positive, about the vertical [rad].
+    pub turned_rad: f64,
+}
+
 /// Everything about one release.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Release {
@@ -45,6 +54,9 @@ pub struct Release {
     pub used: ReleaseVelocity,
     /// Where that came from.
     pub source: ReleaseSource,
+    /// How it was helped; `None` where [`crate::config::ReleaseConfig::assist_share`] is 0 or it was no ball.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub assist: Option<Assist>,
     /// The estimate from the device's velocities, where it supplied them.
     pub from_velocity: Option<ReleaseVelocity>,
     /// The estimate from the last poses, where there were enough.

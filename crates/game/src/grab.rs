@@ -7,6 +7,7 @@ use physics::query::{Limits, separation};
 use physics::{Motion, Pose, Shape};
 
 use crate::Game;
+use crate::assist;
 use crate::components::{Ball, Held, Journey, Pin, PinKeeper, Shown};
 use crate::event::{EventKind, Release, ReleaseSource, ReleaseVelocity};
 use crate::hand::surface_distance;
@@ -163,6 +164,11 @@ impl Game {
                 ReleaseSource::Poses,
             ),
         };
+        let model = self.room.model(held.entity);
+        let (used, assist) = match model {
+            Model::Ball(_) => assist::help(used, config.assist_share),
+            _ => (used, None),
+        };
         self.room.world.set_motion(id, Motion::Dynamic);
         self.room.world.set_velocity(id, used.linear, used.angular);
         self.fly(held.entity, used, moment.lead_s);
@@ -173,9 +179,10 @@ impl Game {
         let is_foul = self.head_is_beyond();
         self.note_on_ball(held.entity, Some(is_foul));
         self.record(EventKind::Released(Release {
-            model: self.room.model(held.entity),
+            model,
             used,
             source,
+            assist,
             from_velocity: measured,
             from_poses: fitted,
             speed: used.linear.length(),

@@ -6,6 +6,7 @@
 #![cfg_attr(test, allow(clippy::disallowed_methods))]
 
 mod alley;
+mod assist;
 mod ball_return;
 mod bare_alley;
 mod bodies;
@@ -45,7 +46,7 @@ pub use config::{
 };
 pub use contacts::{Contact, RollingBall};
 pub use event::{
-    EndReason, Event, EventKind, Release, ReleaseSource, ReleaseVelocity, TrackedPart,
+    Assist, EndReason, Event, EventKind, Release, ReleaseSource, ReleaseVelocity, TrackedPart,
 };
 pub use holes::{FINGERS_IN_HAND, HALF_SPAN, THUMB_IN_HAND, hand_on_ball};
 pub use input::{Input, Tracked, TriggerChange, Velocity};

@@ -119,7 +119,7 @@ pub struct WalkingConfig {
     pub furniture_margin_m: f64,
 }
 
-/// How a release velocity is estimated from poses alone.
+/// How a release velocity is estimated from poses alone, and whether a throw is helped.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ReleaseConfig {
@@ -127,6 +127,14 @@ pub struct ReleaseConfig {
     pub window_s: f64,
     /// The curve that is fitted.
     pub fit: ReleaseFit,
+    /// Share of a ball's angle to the lane's axis, seen from above, that a release takes away, up to 5 degrees; 0 helps nobody,
+    /// and is not written down, so that settings without it are what they were.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub assist_share: f64,
+}
+
+fn is_zero(share: &f64) -> bool {
+    *share == 0.0
 }
 
 /// The curve that is fitted to the last poses.

@@ -1,6 +1,8 @@
 //! The game as a participant meets it: real physics, everything through inputs.
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
+/// Help for throws.
+mod assist;
 /// What could be heard of a throw.
 mod contacts;
 /// Whole throws.

@@ -161,6 +161,9 @@ pub(super) fn hand(config: &Config) -> Result<(), Invalid> {
     )?;
     ranges(
         "release",
-        &[("window_s", config.release.window_s, 0.02, 0.5)],
+        &[
+            ("window_s", config.release.window_s, 0.02, 0.5),
+            ("assist_share", config.release.assist_share, 0.0, 1.0),
+        ],
     )
 }
