@@ -24,6 +24,8 @@ mod recording;
 mod release;
 /// What each scene shows, what that costs, and that the distance does not flicker.
 mod scenes;
+/// Processes and screens, which the tests of the headset have too.
+mod shared;
 /// Throws without hands, one and many.
 mod shot;
 /// What a throw sounds like.

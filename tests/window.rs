@@ -6,20 +6,23 @@
 use std::f64::consts::FRAC_PI_2;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
-use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant};
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Duration;
 
 use bowling_app::journal::Entry;
 use game::{EventKind, Game, Input, Model, Phase};
 use glam::DVec3;
 
+use crate::shared::ask_until;
+use crate::shared::process::Process;
+use crate::shared::screen::{Screen, colours};
 use crate::support;
 
 /// Longest wait for anything that a person would see happen.
 const PATIENCE: Duration = Duration::from_secs(120);
 /// Size of the virtual screen [pixels].
-const SCREEN: (i32, i32) = (640, 400);
+const SCREEN: [u32; 2] = [640, 400];
 /// Shoulder from the eyes [m], and the cursor's gains, as the desk has them: a person learns these by looking.
 const SHOULDER: DVec3 = DVec3::new(0.18, -0.28, 0.0);
 const SIDE_PER_HALF_WIDTH: f64 = 0.55;
@@ -28,90 +31,6 @@ const LOWEST_ANGLE: f64 = -0.75;
 /// A notch of the wheel moves the hand this far, more or less [m].
 const ARM_PER_NOTCH: f64 = 0.08;
 const LOOK_PER_PIXEL: f64 = 0.004;
-
-/// Kills its process when the test ends, however it ends.
-struct Process(Child);
-
-impl Drop for Process {
-    fn drop(&mut self) {
-        let _ = self.0.kill();
-        let _ = self.0.wait();
-    }
-}
-
-/// A virtual screen whose picture lies in a file.
-struct Screen {
-    _server: Process,
-    display: String,
-    picture: PathBuf,
-}
-
-impl Screen {
-    fn open(folder: &Path) -> Self {
-        let size = format!("{}x{}x24", SCREEN.0, SCREEN.1);
-        let mut server = Command::new("Xvfb")
-            .args([
-                "-displayfd",
-                "1",
-                "-screen",
-                "0",
-                &size,
-                "-nolisten",
-                "tcp",
-                "-fbdir",
-            ])
-            .arg(folder)
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .expect("Xvfb starts: install the package xvfb, as scripts/test.sh does");
-        let mut number = String::new();
-        let output = server.stdout.take().expect("standard output is piped");
-        BufReader::new(output)
-            .read_line(&mut number)
-            .expect("Xvfb says its display's number");
-        let display = format!(":{}", number.trim());
-        Self {
-            _server: Process(server),
-            display,
-            picture: folder.join("Xvfb_screen0"),
-        }
-    }
-
-    /// One `xdotool` call: real events through the X server.
-    fn act(&self, arguments: &[&str]) -> String {
-        let output = Command::new("xdotool")
-            .args(arguments)
-            .env("DISPLAY", &self.display)
-            .output()
-            .expect("xdotool starts: install the package xdotool, as scripts/test.sh does");
-        assert!(
-            output.status.success(),
-            "xdotool {arguments:?}: {}",
-            String::from_utf8_lossy(&output.stderr)
-        );
-        String::from_utf8_lossy(&output.stdout).trim().to_owned()
-    }
-
-    /// The picture on the screen: XWD, 32 bits per pixel, blue first.
-    fn shot(&self) -> image::RgbImage {
-        let mut bytes = Vec::new();
-        File::open(&self.picture)
-            .and_then(|mut f| f.read_to_end(&mut bytes))
-            .expect("Xvfb keeps its picture in a file");
-        let word = |at: usize| {
-            u32::from_be_bytes(bytes[4 * at..4 * at + 4].try_into().expect("four bytes")) as usize
-        };
-        // XWDFile.h: header size, .., width (4), height (5), .., bytes per line (12), .., colours (19) of 12 bytes each.
-        let (header, width, height, stride, colours) =
-            (word(0), word(4), word(5), word(12), word(19));
-        let pixels = header + 12 * colours;
-        image::RgbImage::from_fn(width as u32, height as u32, |x, y| {
-            let at = pixels + y as usize * stride + 4 * x as usize;
-            image::Rgb([bytes[at + 2], bytes[at + 1], bytes[at]])
-        })
-    }
-}
 
 /// Follows a session from its journal.
 struct Eyes {
@@ -185,16 +104,9 @@ fn entry(line: &str) -> Entry {
     serde_json::from_value(fields).expect("a journal line holds an entry")
 }
 
-/// Asks again and again, without a break longer than a picture takes, until there is an answer.
-fn wait_for<T>(what: &str, mut ask: impl FnMut() -> Option<T>) -> T {
-    let begun = Instant::now();
-    loop {
-        if let Some(answer) = ask() {
-            return answer;
-        }
-        assert!(begun.elapsed() < PATIENCE, "waited {PATIENCE:?} for {what}");
-        std::thread::sleep(Duration::from_millis(5));
-    }
+/// Waits for whatever a person would see happen.
+fn wait_for<T>(what: &str, ask: impl FnMut() -> Option<T>) -> T {
+    ask_until(PATIENCE, ask).unwrap_or_else(|| panic!("waited {PATIENCE:?} for {what}"))
 }
 
 /// A person at the desk.
@@ -413,19 +325,14 @@ impl Person {
 
 /// The pixel, as `xdotool` wants it, of a place from -1 to 1 with y up.
 fn pixels(x: f64, y: f64) -> (String, String) {
-    let pixel = |at: f64, size: i32| (0.5 * (at + 1.0) * f64::from(size)).round().to_string();
-    (pixel(x, SCREEN.0), pixel(-y, SCREEN.1))
-}
-
-/// Different colours on a picture, counted roughly: an empty or broken window has few.
-fn colours(picture: &image::RgbImage) -> usize {
-    let coarse = picture.pixels().map(|pixel| pixel.0.map(|c| c >> 4));
-    coarse.collect::<std::collections::BTreeSet<_>>().len()
+    let pixel = |at: f64, size: u32| (0.5 * (at + 1.0) * f64::from(size)).round().to_string();
+    (pixel(x, SCREEN[0]), pixel(-y, SCREEN[1]))
 }
 
 /// The program in a window that fills the screen, recording into a folder.
 fn open_window(screen: &Screen, recording: &Path) -> Process {
-    let program = Command::new(env!("CARGO_BIN_EXE_bowling"))
+    let mut command = Command::new(env!("CARGO_BIN_EXE_bowling"));
+    command
         .args([
             "play",
             "--device",
@@ -436,20 +343,18 @@ fn open_window(screen: &Screen, recording: &Path) -> Process {
             "--out",
         ])
         .arg(recording)
-        .env("DISPLAY", &screen.display)
+        .env("DISPLAY", screen.display())
         .env_remove("WAYLAND_DISPLAY")
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program starts");
-    let program = Process(program);
+        .stderr(Stdio::piped());
+    let program = Process::start("bowling", &mut command);
     let window = screen.act(&["search", "--sync", "--name", "^Bowling$"]);
     screen.act(&[
         "windowsize",
         &window,
-        &SCREEN.0.to_string(),
-        &SCREEN.1.to_string(),
+        &SCREEN[0].to_string(),
+        &SCREEN[1].to_string(),
     ]);
     screen.act(&["windowmove", &window, "0", "0"]);
     screen.act(&["windowfocus", "--sync", &window]);
@@ -470,7 +375,7 @@ fn letters(screen: &Screen) -> usize {
 #[test]
 fn f3_shows_what_it_costs_and_hides_it_again() {
     let folder = support::fresh_folder("window-cost");
-    let screen = Screen::open(&folder);
+    let screen = Screen::open(SCREEN);
     let recording = folder.join("recording");
     let _program = open_window(&screen, &recording);
     let mut eyes = Eyes::open(&recording.join("journal.jsonl"));
@@ -496,7 +401,7 @@ fn f3_shows_what_it_costs_and_hides_it_again() {
 #[test]
 fn a_person_bowls_a_frame_with_mouse_and_keys() {
     let folder = support::fresh_folder("window");
-    let screen = Screen::open(&folder);
+    let screen = Screen::open(SCREEN);
     let recording = folder.join("recording");
     let mut program = open_window(&screen, &recording);
 
@@ -546,12 +451,11 @@ fn a_person_bowls_a_frame_with_mouse_and_keys() {
     }
     person.screen.act(&["key", "Escape"]);
 
-    let status = wait_for("the program to end", || {
-        program.0.try_wait().expect("a child can be asked")
-    });
+    let status = program.ended_within(PATIENCE);
+    let status = status.expect("the program ends");
     let mut output = String::new();
     program
-        .0
+        .child()
         .stdout
         .take()
         .expect("piped")
@@ -559,7 +463,7 @@ fn a_person_bowls_a_frame_with_mouse_and_keys() {
         .expect("text");
     let mut errors = String::new();
     program
-        .0
+        .child()
         .stderr
         .take()
         .expect("piped")

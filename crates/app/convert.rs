@@ -2,22 +2,23 @@
 
 mod board;
 mod eyes;
+mod hand;
 mod light;
 mod screen;
 mod shape;
 mod stock;
 
-use game::{Model, Visible, hand_on_ball};
+use game::{Model, Visible};
 use glam::{DQuat, Mat4, Quat, Vec3};
 use physics::Pose;
 use renderer::{Instance, MAX_OCCLUDERS, Material, Occluder, Scene};
 
 pub use board::Scores;
 pub use eyes::{bird, eyes, spectator, spectator_eyes};
+pub use hand::shrunk_hand;
 pub use shape::HandShape;
 pub use stock::{Stock, settings};
 
-use crate::scenery::hand::PALM;
 use stock::box_material;
 
 /// The scene of these things, with the hand in its shape.
@@ -31,7 +32,7 @@ pub fn scene<'a>(
     instances.extend(stock.screen_instance());
     for thing in &visible {
         match thing.model {
-            Model::Hand => instances.push(hand_instance(thing, &visible, stock, hand)),
+            Model::Hand => instances.extend(hand::instances(thing, &visible, stock, hand)),
             _ => add_thing(&mut instances, thing, stock),
         }
     }
@@ -42,40 +43,6 @@ pub fn scene<'a>(
         occluders: occluders(&visible, stock),
         enclosure: stock.enclosure,
         ..Scene::default()
-    }
-}
-
-/// A hand at a share of its size, from 0 to 1; where it holds nothing, its place is its own.
-pub fn shrunk_hand(hand: &Visible, stock: &Stock, shape: HandShape, share: f64) -> Instance {
-    let mut instance = hand_instance(hand, &[], stock, shape);
-    instance.world_from_mesh *= Mat4::from_scale(Vec3::splat(share as f32));
-    instance
-}
-
-/// A hand that holds a ball lies on it, whatever place within reach it took it from.
-fn hand_instance(thing: &Visible, all: &[Visible], stock: &Stock, shape: HandShape) -> Instance {
-    let ball = shape
-        .held_ball()
-        .and_then(|model| all.iter().find(|other| other.model == model));
-    let hands = &stock.hands;
-    let (mesh, pose) = match (shape, ball) {
-        (_, Some(ball)) => {
-            let (centre, radius) = (ball.pose.position, 0.5 * ball.size.x);
-            let pose = hand_on_ball(&thing.pose, centre, radius, f64::from(PALM));
-            (hands.gripping, pose)
-        }
-        (HandShape::Pointing, None) => (hands.pointing, thing.pose),
-        (HandShape::Closing(closed), None) => {
-            let last = hands.closing.len() - 1;
-            let step = (closed.clamp(0.0, 1.0) * last as f64).round() as usize;
-            (hands.closing[step], thing.pose)
-        }
-        (HandShape::Holding(_), None) => (hands.closing[hands.closing.len() - 1], thing.pose),
-    };
-    Instance {
-        mesh,
-        material: hands.skin,
-        world_from_mesh: world_from(&pose, Vec3::ONE),
     }
 }
 
@@ -189,7 +156,7 @@ pub(crate) mod tests {
         Config::load(&folder, "alley", None, &[]).expect("the shipped settings")
     }
 
-    fn visible(model: Model, size: DVec3) -> Visible {
+    pub(crate) fn visible(model: Model, size: DVec3) -> Visible {
         let pose = Pose {
             position: DVec3::new(1.0, 2.0, -3.0),
             rotation: DQuat::IDENTITY,
@@ -203,7 +170,7 @@ pub(crate) mod tests {
     }
 
     /// A stock of triangles and single pixels: what is tested here is where things go, not how they look.
-    fn stock() -> Stock {
+    pub(crate) fn stock() -> Stock {
         let root = tempfile::tempdir().expect("a temporary folder");
         let folder = |name: &str| {
             let path = root.path().join("assets").join(name);
@@ -271,20 +238,5 @@ pub(crate) mod tests {
             open.world_from_mesh,
             last(HandShape::Pointing).world_from_mesh
         );
-    }
-
-    #[test]
-    fn a_hand_that_holds_a_ball_lies_on_it() {
-        let stock = stock();
-        let hand = visible(Model::Hand, DVec3::ONE);
-        let mut ball = visible(Model::Ball(1), DVec3::splat(0.217));
-        ball.pose.position -= DVec3::new(0.0, 0.2, 0.0);
-        let shape = HandShape::Holding(Model::Ball(1));
-        let scene = scene(&[hand, ball], &stock, shape);
-        let drawn = &scene.instances[stock.scenery.len()];
-        assert_eq!(drawn.mesh, stock.hands.gripping);
-        let palm = drawn.world_from_mesh.transform_point3(Vec3::ZERO);
-        let away = palm.distance(ball.pose.position.as_vec3());
-        assert!((away - 0.1085 - PALM).abs() < 1e-5, "{away}");
     }
 }

@@ -88,6 +88,7 @@ pub fn run(
         began: Instant::now(),
         left_eye: Mutex::new(None),
         again: Mutex::new(None),
+        fingers: Mutex::new(None),
         keys: Default::default(),
         stop: Arc::clone(&stop),
     });
@@ -288,6 +289,8 @@ impl Player {
         }
         let is_here = self.attention.is_here(headset.focus());
         let at = frame.display_time_ns();
+        let fingers = self.participant.fingers(&readings);
+        self.shared.see_fingers(fingers);
         let (participant, panel, keys) = (&mut self.participant, &mut self.panel, &self.shared);
         let (fading, ears, again) = (&mut self.fading, &mut self.ears, &mut self.again);
         let played = self.shared.with(|session| {
@@ -316,13 +319,14 @@ impl Player {
             let visible = game.visible_at(participant.share());
             let scores = convert::Scores::of(game);
             stage.stock.show_scores(&mut stage.renderer, &scores)?;
-            let hand_shape = convert::HandShape::of(game);
+            let hand_shape = convert::HandShape::of(game).bent(fingers);
             let mut scene = convert::scene(visible.iter(), &stage.stock, hand_shape);
             if is_here {
                 let faded = fading.of(&visible, at);
-                scene.instances.extend(faded.map(|(hand, share)| {
-                    convert::shrunk_hand(&hand, &stage.stock, hand_shape, share)
-                }));
+                if let Some((hand, share)) = faded {
+                    let hand = convert::shrunk_hand(&hand, &stage.stock, hand_shape, share);
+                    scene.instances.extend(hand);
+                }
             } else {
                 fading.forget();
             }
@@ -344,12 +348,10 @@ impl Player {
         let timing = self.times.of(&frame, simulated);
         let is_shown = if frame.should_render() {
             let rig = (rig.position.as_vec3(), rig.rotation.as_quat());
-            let (views, _) = headset.show(frame, &mut stage.renderer, &scene, rig, false)?;
-            *self
-                .shared
-                .left_eye
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner) = views.first().copied();
+            let views = headset
+                .show(frame, &mut stage.renderer, &scene, rig, false)?
+                .views;
+            self.shared.see(views.first().copied());
             !views.is_empty()
         } else {
             headset.skip(frame)?;

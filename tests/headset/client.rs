@@ -9,9 +9,10 @@ use std::time::{Duration, Instant};
 
 use rustix::process::Signal;
 
-use super::ask_until;
-use super::process::Process;
 use super::service::Service;
+use super::validation::Layers;
+use crate::shared::ask_until;
+use crate::shared::process::Process;
 
 /// Longest wait for the program's end.
 const PATIENCE: Duration = Duration::from_secs(60);
@@ -74,11 +75,12 @@ impl Output {
     }
 }
 
-/// The program as a client of the runtime; killed when the test ends.
+/// The program as a client of the runtime, under the validation layers; killed when the test ends.
 pub struct Client {
     process: Process,
     output: Arc<Output>,
     readers: Vec<JoinHandle<()>>,
+    layers: Layers,
     /// From which line on [`Self::wait_for`] looks at output and errors.
     unread: [usize; 2],
 }
@@ -92,16 +94,18 @@ impl Client {
         Self::start_in(service, arguments, &[])
     }
 
-    /// As [`Self::start`], with these variables in its environment: a display, layers that watch it.
+    /// As [`Self::start`], with these variables in its environment: a display, say.
     ///
     /// # Panics
     /// When it cannot be started.
     pub fn start_in(service: &Service, arguments: &[&str], environment: &[(&str, &OsStr)]) -> Self {
+        let layers = Layers::new();
         let mut command = service.client_command(Path::new(env!("CARGO_BIN_EXE_bowling")));
         command
             .args(arguments)
             // The dynamic loader is what the system takes for the program: nothing is found beside it.
             .env("BOWLING_ROOT", env!("CARGO_MANIFEST_DIR"))
+            .envs(layers.environment())
             .envs(environment.iter().copied())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped());
@@ -118,6 +122,7 @@ impl Client {
             process,
             output,
             readers,
+            layers,
             unread: [0; 2],
         }
     }
@@ -154,9 +159,14 @@ impl Client {
         self.output.said().text()
     }
 
+    /// Whether OpenXR's validation layer watches it.
+    pub fn is_watched(&self) -> bool {
+        self.layers.have_begun()
+    }
+
     /// Its process number.
     pub fn id(&mut self) -> u32 {
-        self.process.child().id()
+        self.process.id()
     }
 
     /// How it ended; none while it runs.
@@ -176,7 +186,7 @@ impl Client {
     /// Waits for its own end: how it ended, and all that it printed.
     ///
     /// # Panics
-    /// When it does not end.
+    /// When it does not end, or when the validation layers found something wrong.
     pub fn wait(mut self) -> (ExitStatus, String) {
         let ended = self.process.ended_within(PATIENCE);
         let ended = ended.expect("the program ends when it is asked to");
@@ -184,6 +194,7 @@ impl Client {
             reader.join().expect("no reader panics");
         }
         let output = self.output();
+        assert_eq!(self.layers.complaints(&output), Vec::<String>::new());
         (ended, output)
     }
 }
@@ -191,7 +202,11 @@ impl Client {
 impl Drop for Client {
     fn drop(&mut self) {
         if std::thread::panicking() {
-            eprintln!("the program said:\n{}", self.output());
+            let said = self.output();
+            eprintln!(
+                "the program said:\n{said}\n{:?}",
+                self.layers.complaints(&said)
+            );
         }
     }
 }

@@ -1,100 +1,52 @@
-//! What both eyes show, against the offscreen renderer; and the validation layers, which watch and are watched.
+//! What both eyes show, against the offscreen renderer and against geometry.
 
-use std::path::Path;
-use std::time::{Duration, Instant};
+use renderer::glam::{Mat4, Vec3};
+use renderer::headset::Seen;
+use renderer::{FAR_M, Gpu, Instance, Material, MeshId, NEAR_M, RgbaImage, Scene, View};
 
-use renderer::glam::{Mat4, Quat, Vec3};
-use renderer::headset::{HeadsetSession, HeadsetSettings};
-use renderer::{
-    Gpu, Instance, Material, MeshData, MeshId, Renderer, RendererSettings, RgbaImage, Scene, View,
-};
-
+use crate::inside::{is_inside, picture, renderer_on, rig, run_inside};
 use crate::machine::runtime;
-use crate::play::start_in;
-use crate::room::{Hand, PATIENCE, Room};
 use crate::service::{Compositor, Service};
 
-/// Set for the tests that run inside the runtime's libraries, as a client of the service that their parent started.
-const INSIDE: &str = "BOWLING_XR_INSIDE";
 /// Distance between the remote driver's eyes [m].
 const EYE_DISTANCE: f32 = 0.063;
-/// Where the participant's space lies in the world: turned, so that a forgotten turn shows.
-const RIG: (Vec3, f32) = (Vec3::new(1.0, 0.0, 4.0), 0.4);
+/// Radius of the ball [m].
+const RADIUS: f32 = 0.08;
+/// How far in front of the participant the wall stands [m].
+const WALL_M: f32 = 6.0;
+/// Share of a side that Monado cuts off each corner: its mask for headsets that have none of their own, u_visibility_mask.c.
+const CORNER: f32 = 0.125;
 
-/// Runs the test `name` of this file again, with the runtime's libraries, and returns what it said.
-fn run_inside(service: &Service, name: &str, environment: &[(&str, &Path)]) -> String {
-    let program = std::env::current_exe().expect("a test knows its program");
-    let output = service
-        .client_command(&program)
-        .args(["--exact", name, "--nocapture"])
-        .env(INSIDE, "1")
-        .envs(environment.iter().copied())
-        .output()
-        .expect("the runner starts");
-    let said = [output.stdout, output.stderr].concat();
-    let said = String::from_utf8_lossy(&said).into_owned();
-    assert!(output.status.success(), "{said}");
-    assert!(said.contains("1 passed"), "no such test inside: {said}");
-    said
-}
-
-fn is_inside() -> bool {
-    std::env::var_os(INSIDE).is_some()
-}
-
-/// Two balls that shine by themselves, one near and one far, in the participant's space.
-fn scene(ball: MeshId) -> (Scene, [Vec3; 2]) {
+/// Middles of two balls before the participant, one near and one far, world frame.
+fn places() -> [Vec3; 2] {
     let rig = rig();
-    let places = [Vec3::new(-0.25, 1.55, -1.2), Vec3::new(0.5, 1.7, -3.0)]
-        .map(|place| rig.0 + rig.1 * place);
+    [Vec3::new(-0.25, 1.55, -1.2), Vec3::new(0.5, 1.7, -3.0)].map(|place| rig.0 + rig.1 * place)
+}
+
+/// The balls, which shine by themselves.
+fn balls(ball: MeshId) -> Scene {
     let mut scene = Scene::default();
-    for (place, color) in places.into_iter().zip([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]) {
+    for (place, color) in places().into_iter().zip([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]) {
         scene.instances.push(Instance {
             mesh: ball,
             material: Material::unlit(color),
             world_from_mesh: Mat4::from_translation(place),
         });
     }
-    (scene, places)
+    scene
 }
 
-fn rig() -> (Vec3, Quat) {
-    (RIG.0, Quat::from_rotation_y(RIG.1))
-}
-
-fn renderer_on(gpu: &Gpu) -> (Renderer, MeshId) {
-    let mut renderer = Renderer::new(gpu, RendererSettings::default()).expect("plain settings");
-    let ball = renderer
-        .add_mesh(&MeshData::sphere(0.08, 48))
-        .expect("a ball");
-    (renderer, ball)
-}
-
-/// The first picture that the runtime wants, with its views.
-fn picture() -> ([View; 2], Vec<RgbaImage>) {
-    let mut headset = HeadsetSession::open(HeadsetSettings::default()).expect("a headset");
-    let (mut renderer, ball) = renderer_on(headset.gpu());
-    let (scene, _) = scene(ball);
-    let begun = Instant::now();
-    loop {
-        assert!(begun.elapsed() < PATIENCE, "no picture was wanted");
-        headset.poll().expect("the service runs");
-        if !headset.is_running() {
-            std::thread::sleep(Duration::from_millis(2));
-            continue;
-        }
-        let frame = headset.wait().expect("the service runs");
-        if !frame.should_render() {
-            headset.skip(frame).expect("the service runs");
-            continue;
-        }
-        let (views, images) = headset
-            .show(frame, &mut renderer, &scene, rig(), true)
-            .expect("a picture");
-        if let ([left, right], Some(images)) = (views.as_slice(), images) {
-            return ([*left, *right], images);
-        }
-    }
+/// The same before a green wall that fills the picture.
+fn balls_before_a_wall([ball, wall]: [MeshId; 2]) -> Scene {
+    let mut scene = balls(ball);
+    let (position, rotation) = rig();
+    let place = position + rotation * Vec3::new(0.0, 1.6, -WALL_M);
+    scene.instances.push(Instance {
+        mesh: wall,
+        material: Material::unlit([0.0, 1.0, 0.0]),
+        world_from_mesh: Mat4::from_rotation_translation(rotation, place),
+    });
+    scene
 }
 
 /// Middle of the pixels in which one channel is strong and the others are weak.
@@ -116,11 +68,14 @@ fn both_eyes_show_what_the_offscreen_renderer_draws() {
     if !is_inside() {
         let Some(runtime) = runtime() else { return };
         let service = Service::start(&runtime, Compositor::Null);
-        let name = "eyes::both_eyes_show_what_the_offscreen_renderer_draws";
-        run_inside(&service, name, &[]);
+        run_inside(
+            &service,
+            "eyes::both_eyes_show_what_the_offscreen_renderer_draws",
+        );
         return;
     }
-    let (views, images) = picture();
+    let (views, seen) = picture(|[ball, _]| balls(ball));
+    let images: Vec<_> = seen.into_iter().map(|eye| eye.picture).collect();
     let [width, height] = [images[0].width(), images[0].height()];
     // The right eye is at the right, in the participant's own axes.
     let apart = rig().1.inverse() * (views[1].position - views[0].position);
@@ -129,10 +84,9 @@ fn both_eyes_show_what_the_offscreen_renderer_draws() {
     assert!(apart.abs_diff_eq(Vec3::X * EYE_DISTANCE, 1e-4), "{apart}");
 
     let gpu = Gpu::new(renderer::BackendChoice::Vulkan).expect("the same driver");
-    let (mut offscreen, ball) = renderer_on(&gpu);
-    let (scene, places) = scene(ball);
+    let (mut offscreen, [ball, _]) = renderer_on(&gpu);
     let drawn = offscreen
-        .render(&scene, &views, width, height)
+        .render(&balls(ball), &views, width, height)
         .expect("the same views");
     for (eye, (seen, drawn)) in images.iter().zip(&drawn).enumerate() {
         let off = seen
@@ -142,7 +96,7 @@ fn both_eyes_show_what_the_offscreen_renderer_draws() {
             .max();
         assert!(off <= Some(2), "eye {eye} differs by {off:?} of 255");
     }
-    for (channel, place) in [(0, places[0]), (2, places[1])] {
+    for (channel, place) in [(0, places()[0]), (2, places()[1])] {
         let seen = [0, 1].map(|eye| middle_of(&images[eye], channel));
         let expected = views.map(|view| view.pixel_of(place, width, height).expect("in front"));
         let disparity = [seen, expected].map(|[left, right]: [[f32; 2]; 2]| left[0] - right[0]);
@@ -157,122 +111,120 @@ fn both_eyes_show_what_the_offscreen_renderer_draws() {
     }
 }
 
-/// What the layers write, by their environment.
-fn watched(log: &Path) -> [(&'static str, &Path); 4] {
-    [
-        (
-            "XR_ENABLE_API_LAYERS",
-            Path::new("XR_APILAYER_LUNARG_core_validation"),
-        ),
-        ("XR_CORE_VALIDATION_EXPORT_TYPE", Path::new("text")),
-        ("XR_CORE_VALIDATION_FILE_NAME", log),
-        (
-            "VK_INSTANCE_LAYERS",
-            Path::new("VK_LAYER_KHRONOS_validation"),
-        ),
-    ]
+/// How far a pixel lies from the nearest corner of its picture, both axes as shares of their sides added up.
+fn from_corner(x: u32, y: u32, image: &RgbaImage) -> f32 {
+    let from_edge = |at: u32, side: u32| {
+        let share = (at as f32 + 0.5) / side as f32;
+        share.min(1.0 - share)
+    };
+    from_edge(x, image.width()) + from_edge(y, image.height())
 }
 
-/// What OpenXR's layer found wrong: everything but its own beginning and end.
-fn complaints(log: &Path) -> Vec<String> {
-    let text = std::fs::read_to_string(log).expect("the layer writes its log");
-    assert!(
-        text.contains("Core Validation Layer is initialized"),
-        "{text}"
-    );
-    let lines = text.lines().filter(|line| !line.contains("VALID_DEBUG"));
-    lines
-        .filter(|line| !line.trim().is_empty())
-        .map(str::to_owned)
-        .collect()
-}
-
-/// Playing, walking, holding and letting go under both layers: not a word from either.
+/// What the lenses do not show is left as it was before anything was drawn; everything else is drawn.
 #[test]
-fn the_validation_layers_find_nothing() {
-    let Some(runtime) = runtime() else { return };
-    let service = Service::start(&runtime, Compositor::Null);
-    let out = tempfile::tempdir().expect("a temporary folder");
-    let (folder, log) = (out.path().join("session"), out.path().join("layer.txt"));
-    let environment = watched(&log).map(|(name, value)| (name, value.as_os_str()));
-    let mut client = start_in(&service, &folder, &environment);
-    let mut room = Room::enter(&service, &mut client, &folder);
-    room.take_ball(Hand::Right);
-    room.walk_to(Hand::Right, 0.2, 1.6);
-    room.hand(Hand::Right).trigger = 0.0;
-    room.send();
-    room.wait_until("the release", |room| room.count("released") == 1);
-    let (status, said) = client.finish();
-    assert!(status.success(), "{said}");
-    assert_eq!(complaints(&log), Vec::<String>::new());
-    assert!(!said.contains("VUID"), "Vulkan's layer complains: {said}");
-    assert!(
-        !said.contains("Validation Error"),
-        "Vulkan's layer complains: {said}"
-    );
-}
-
-/// The layers are really there: each names a mistake that is made on purpose.
-#[test]
-fn the_validation_layers_catch_a_planted_mistake() {
-    if is_inside() {
-        plant_in_openxr();
-        plant_in_vulkan();
+fn what_the_lenses_hide_is_not_shaded() {
+    if !is_inside() {
+        let Some(runtime) = runtime() else { return };
+        let service = Service::start(&runtime, Compositor::Null);
+        run_inside(&service, "eyes::what_the_lenses_hide_is_not_shaded");
         return;
     }
-    let Some(runtime) = runtime() else { return };
-    let service = Service::start(&runtime, Compositor::Null);
-    let out = tempfile::tempdir().expect("a temporary folder");
-    let log = out.path().join("layer.txt");
-    let name = "eyes::the_validation_layers_catch_a_planted_mistake";
-    let said = run_inside(&service, name, &watched(&log));
-    assert!(
-        complaints(&log)
-            .iter()
-            .any(|line| line.contains("VUID-XrSystemGetInfo-formFactor")),
-        "{:?}",
-        complaints(&log)
-    );
-    assert!(said.contains("VUID-VkBufferCreateInfo-size"), "{said}");
-}
-
-#[expect(unsafe_code, reason = "the loader is a foreign library")]
-fn plant_in_openxr() {
-    use openxr as xr;
-    // SAFETY: the loader of the runner.
-    let entry = unsafe { xr::Entry::load(&()) }.expect("a loader");
-    let application = xr::ApplicationInfo {
-        application_name: "mistaken",
-        ..Default::default()
-    };
-    let instance = entry
-        .create_instance(&application, &xr::ExtensionSet::default(), &[], &())
-        .expect("an instance");
-    // No such form factor.
-    let _ = instance.system(xr::FormFactor::from_raw(999));
-}
-
-#[expect(unsafe_code, reason = "a wrong call is what the layer must see")]
-fn plant_in_vulkan() {
-    use ash::vk;
-    // SAFETY: the calls but the last are right, and nothing outlives what it came from.
-    unsafe {
-        let entry = ash::Entry::load().expect("a loader");
-        let instance = entry
-            .create_instance(&vk::InstanceCreateInfo::default(), None)
-            .expect("an instance");
-        let physical = instance.enumerate_physical_devices().expect("a device")[0];
-        let queue = [vk::DeviceQueueCreateInfo::default().queue_priorities(&[1.0])];
-        let create = vk::DeviceCreateInfo::default().queue_create_infos(&queue);
-        let device = instance
-            .create_device(physical, &create, None)
-            .expect("a device");
-        // A buffer of no bytes.
-        let wrong = vk::BufferCreateInfo::default().usage(vk::BufferUsageFlags::TRANSFER_SRC);
-        if let Ok(buffer) = device.create_buffer(&wrong, None) {
-            device.destroy_buffer(buffer, None);
+    let (_, seen) = picture(balls_before_a_wall);
+    for (eye, Seen { picture, .. }) in seen.iter().enumerate() {
+        // One pixel is cut by the edge.
+        let margin = 2.0 / picture.width().min(picture.height()) as f32;
+        let (mut hidden, mut drawn) = (0, 0);
+        for (x, y, pixel) in picture.enumerate_pixels() {
+            let from_corner = from_corner(x, y, picture);
+            let is_scene = pixel.0[..3].iter().any(|channel| *channel > 128);
+            if from_corner < CORNER - margin {
+                hidden += 1;
+                assert!(!is_scene, "eye {eye} shades ({x}, {y}): {pixel:?}");
+            } else if from_corner > CORNER + margin {
+                drawn += 1;
+                assert!(is_scene, "eye {eye} lacks ({x}, {y}): {pixel:?}");
+            }
         }
-        device.destroy_device(None);
-        instance.destroy_instance(None);
+        assert!(hidden > 100 && drawn > 20 * hidden, "{hidden}, {drawn}");
+    }
+}
+
+/// Places in a pixel, and a little beyond its edges: a mesh's edge is not quite the ball's.
+const WITHIN: [f32; 7] = [-0.1, 0.1, 0.3, 0.5, 0.7, 0.9, 1.1];
+
+/// Least and largest depth that a pixel may have: of the rays through it, by the ball and the wall that they meet first.
+fn depths(view: &View, pixel: [u32; 2], size: [u32; 2], places: &[Vec3; 2]) -> [f32; 2] {
+    let tangents = [
+        [view.fov.left.tan(), view.fov.right.tan()],
+        [view.fov.up.tan(), view.fov.down.tan()],
+    ];
+    let along = |axis: usize, within: f32| {
+        let [from, to] = tangents[axis];
+        from + (to - from) * (pixel[axis] as f32 + within) / size[axis] as f32
+    };
+    let mut range = [f32::INFINITY, f32::NEG_INFINITY];
+    for across in WITHIN {
+        for down in WITHIN {
+            let ray = view.rotation * Vec3::new(along(0, across), along(1, down), -1.0);
+            let depth = depth_along(view, ray, places);
+            range = [range[0].min(depth), range[1].max(depth)];
+        }
+    }
+    range
+}
+
+/// Depth of what a ray meets first. The ray advances one metre before the eye for each of its own lengths.
+fn depth_along(view: &View, ray: Vec3, places: &[Vec3; 2]) -> f32 {
+    let (position, rotation) = rig();
+    let normal = rotation * Vec3::Z;
+    let wall = position - normal * WALL_M - view.position;
+    let mut nearest = wall.dot(normal) / ray.dot(normal);
+    for place in places {
+        let to = *place - view.position;
+        let (a, b) = (ray.length_squared(), ray.dot(to));
+        let inside = b * b - a * (to.length_squared() - RADIUS * RADIUS);
+        if inside >= 0.0 {
+            nearest = nearest.min((b - inside.sqrt()) / a);
+        }
+    }
+    // 0 at the near plane and 1 at the far one, as what the runtime is told says.
+    FAR_M * (nearest - NEAR_M) / (nearest * (FAR_M - NEAR_M))
+}
+
+/// What the runtime gets of the depth is where the things are, by rays that know nothing of meshes and matrices.
+#[test]
+fn the_depth_that_is_handed_over_is_the_scenes() {
+    if !is_inside() {
+        let Some(runtime) = runtime() else { return };
+        let service = Service::start(&runtime, Compositor::Null);
+        run_inside(
+            &service,
+            "eyes::the_depth_that_is_handed_over_is_the_scenes",
+        );
+        return;
+    }
+    let (views, seen) = picture(balls_before_a_wall);
+    let places = places();
+    // Of a mesh of 48 sides the ball is at most 0.2 mm too deep, which is a little at 1.2 m.
+    let tolerance = 2e-5;
+    for (view, seen) in views.iter().zip(&seen) {
+        let size = [seen.picture.width(), seen.picture.height()];
+        let depth = seen.depth.as_ref().expect("this runtime takes depth");
+        assert_eq!(depth.len(), (size[0] * size[1]) as usize);
+        let mut on_balls = 0;
+        for (x, y, _) in seen.picture.enumerate_pixels() {
+            if from_corner(x, y, &seen.picture) < CORNER + 0.01 {
+                continue;
+            }
+            let told = depth[(y * size[0] + x) as usize];
+            let [least, largest] = depths(view, [x, y], size, &places);
+            assert!(
+                (least - tolerance..=largest + tolerance).contains(&told),
+                "({x}, {y}): {told} is not from {least} to {largest}"
+            );
+            // The wall's is 0.992.
+            on_balls += u32::from(told < 0.985);
+        }
+        assert!(on_balls > 100, "the balls have no depth: {on_balls}");
     }
 }

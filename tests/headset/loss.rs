@@ -1,7 +1,7 @@
 //! What a session survives: focus, tracking, and the runtime itself come and go; the game and its journal stay.
 
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use game::Model;
 use glam::DVec3;
@@ -13,14 +13,15 @@ use crate::room::{Hand, PATIENCE, Room};
 use crate::service::{Compositor, Service};
 
 /// A program that plays, and somebody in its room.
-struct Played {
+pub struct Played {
     service: Service,
     client: Client,
-    room: Room,
+    pub room: Room,
     out: tempfile::TempDir,
 }
 
-fn play() -> Option<Played> {
+/// Plays against a service of its own; `None` where there is no runtime.
+pub fn play() -> Option<Played> {
     let runtime = runtime()?;
     let service = Service::start(&runtime, Compositor::Null);
     let out = tempfile::tempdir().expect("a temporary folder");
@@ -37,16 +38,17 @@ fn play() -> Option<Played> {
 
 impl Played {
     /// Ends the program, and has it replay its own journal: every input, event and the last state must be there.
-    fn end(self) {
+    pub fn end(self) {
         let (status, said) = self.client.finish();
         assert!(status.success(), "{said}");
         replays(&self.out.path().join("session"));
     }
 }
 
-/// Starts the runtime again, and waits until the program has found it.
-fn bring_back(service: &mut Service, client: &mut Client) {
+/// Starts the runtime again, and waits until the program has found it. The hands come first: until then the driver has them open.
+fn bring_back(service: &mut Service, room: &mut Room, client: &mut Client) {
     service.restart();
+    room.reconnect(service);
     client.wait_for("Connected to the headset again", PATIENCE);
 }
 
@@ -77,7 +79,7 @@ fn a_killed_runtime_is_waited_for() {
     });
     assert!(room.game.steps() < steps + 720, "the alley stood still");
     assert_eq!(room.game.held(), Some(Model::Ball(0)));
-    bring_back(&mut played.service, &mut played.client);
+    bring_back(&mut played.service, room, &mut played.client);
     let focused = |room: &Room| {
         let lines = room
             .said
@@ -85,7 +87,6 @@ fn a_killed_runtime_is_waited_for() {
             .filter(|line| line["device"]["focus"] == "focused");
         lines.count()
     };
-    room.reconnect(&played.service);
     room.wait_until("the focus again", |room| focused(room) == 2);
     let held_before = room.input;
     room.wait_until("time goes on", |room| {
@@ -101,7 +102,7 @@ fn a_runtime_that_is_asked_to_end_is_waited_for() {
     let Some(mut played) = play() else { return };
     played.service.terminate();
     played.client.wait_for("waits for the headset", PATIENCE);
-    bring_back(&mut played.service, &mut played.client);
+    bring_back(&mut played.service, &mut played.room, &mut played.client);
     played.end();
 }
 
@@ -137,11 +138,8 @@ fn a_lost_focus_pauses_the_game() {
     other.wait_for("Recording into", PATIENCE);
     room.wait_until("the loss of focus", |room| room.input.hand.is_none());
     let steps = room.game.steps();
-    let (begun, frames) = (Instant::now(), room.said.len());
-    while begun.elapsed() < Duration::from_secs(1) {
-        room.follow(Duration::from_millis(50));
-    }
-    assert!(room.said.len() > frames + 5, "frames go on");
+    let frames = room.said.len();
+    room.wait_until("frames that go on", |room| room.said.len() > frames + 20);
     assert_eq!(room.game.steps(), steps);
     let (status, said) = other.finish();
     assert!(status.success(), "{said}");
@@ -164,12 +162,15 @@ fn focus_that_goes_and_comes_pauses_and_goes_on() {
     other.wait_for("Recording into", PATIENCE);
     let room = &mut played.room;
     room.wait_until("the loss of focus", |room| room.input.hand.is_none());
-    let steps = room.game.steps();
+    let (steps, begun) = (room.game.steps(), Instant::now());
     played.service.ctl(&["-p", &id.to_string()]);
     room.wait_until("the focus again", |room| {
         room.input.hand.is_some() && room.input.steps > 0
     });
-    assert!(room.game.steps() < steps + 720, "no time is made up for");
+    // The pause was as long as the other program took to start.
+    let passed = (room.game.steps() - steps) as f64 / 720.0;
+    let most = begun.elapsed().as_secs_f64() + 0.05;
+    assert!(passed < most, "{passed} s in {most} s: time is made up for");
     let (status, said) = other.finish();
     assert!(status.success(), "{said}");
     played.end();
@@ -243,8 +244,8 @@ fn a_lost_hand_drops_the_ball_after_a_while() {
         event["step"].as_f64().expect("a number")
     };
     let after = (step("dropped") - step("tracking")) / 720.0;
-    // A frame of the runtime without a compositor is 50 ms long.
-    assert!((0.25..0.5).contains(&after), "dropped after {after} s");
+    // In whole frames: 50 ms without a compositor, and at most 250 ms of a busy machine's.
+    assert!((0.25..0.56).contains(&after), "dropped after {after} s");
     played.end();
 }
 

@@ -4,38 +4,34 @@
 
 /// The program as the runtime's client, and the journal that it writes.
 mod client;
-/// What the eyes show, and what the validation layers say.
+/// `monado-ctl`.
+mod control;
+/// Play that goes on and on.
+mod endurance;
+/// What the eyes show.
 mod eyes;
+/// Bare hands.
+mod hands;
+/// Tests that run as a client of the runtime themselves.
+mod inside;
 /// Focus, tracking and the runtime come and go.
 mod loss;
 /// What the machine must offer: the unpacked runtime, a network without neighbours.
 mod machine;
 /// Walking, grabbing, swinging, releasing, scoring.
 mod play;
-/// A process that ends with the test.
-mod process;
 /// Head, hands and buttons through the runtime's remote port.
 mod remote;
 /// A participant whom the test moves.
 mod room;
 /// The runtime's service, with a folder, a port and, if need be, a screen of its own.
 mod service;
+/// Processes and screens, which the tests of the product have too.
+#[path = "../shared/mod.rs"]
+mod shared;
+/// What is done to processes.
+mod signals;
 /// How long the first picture takes.
 mod start;
-
-use std::time::{Duration, Instant};
-
-/// Asks again and again until there is an answer; none when `limit` has passed.
-fn ask_until<T>(limit: Duration, mut ask: impl FnMut() -> Option<T>) -> Option<T> {
-    let begun = Instant::now();
-    loop {
-        if let Some(answer) = ask() {
-            return Some(answer);
-        }
-        if begun.elapsed() >= limit {
-            return None;
-        }
-        // Shorter than a frame, so that nothing that happens once a frame is seen late.
-        std::thread::sleep(Duration::from_millis(2));
-    }
-}
+/// The validation layers watch every program of these tests, and are watched.
+mod validation;

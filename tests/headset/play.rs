@@ -2,32 +2,42 @@
 
 use std::ffi::OsStr;
 use std::path::Path;
-use std::process::Command;
 use std::time::Duration;
 
 use game::{Button, Phase};
 use glam::DVec3;
 use serde_json::{Value, json};
 
-use crate::ask_until;
 use crate::client::Client;
 use crate::machine::runtime;
 use crate::room::{Hand, PATIENCE, Released, Room, Swing};
 use crate::service::{Compositor, Service};
+use crate::shared::ask_until;
+use crate::shared::screen::colours;
 
 /// Beside the rack, so that a ball is within reach of either hand.
 const BESIDE_RACK: [&str; 4] = ["--set", "start.x_m=0.75", "--set", "start.z_m=2.25"];
 
-/// Starts the program beside the rack, in a game of one frame that is recorded into `folder`.
+/// Starts the program beside the rack, in a game of one frame that is recorded into `folder`. The scene is the one that is
+/// quickly drawn, so that a busy machine without a graphics card makes enough pictures of a swing.
 pub fn start(service: &Service, folder: &Path) -> Client {
-    start_in(service, folder, &[])
+    start_scene(service, folder, "test", &[])
 }
 
-/// As [`start`], with more in its environment.
-pub fn start_in(service: &Service, folder: &Path, environment: &[(&str, &OsStr)]) -> Client {
+/// As [`start`], in the alley with all that it shows, and with more in the program's environment.
+pub fn start_alley(service: &Service, folder: &Path, environment: &[(&str, &OsStr)]) -> Client {
+    start_scene(service, folder, "alley", environment)
+}
+
+fn start_scene(
+    service: &Service,
+    folder: &Path,
+    scene: &str,
+    environment: &[(&str, &OsStr)],
+) -> Client {
     let folder = folder.to_str().expect("a plain path");
     let mut arguments = vec!["play", "--device", "headset", "--frames", "1", "--no-video"];
-    arguments.extend(["--out", folder]);
+    arguments.extend(["--scene", scene, "--out", folder]);
     arguments.extend(BESIDE_RACK);
     Client::start_in(service, &arguments, environment)
 }
@@ -109,6 +119,16 @@ fn a_whole_frame_is_played() {
     let folder = out.path().join("session");
     let mut client = start(&service, &folder);
     let mut room = Room::enter(&service, &mut client, &folder);
+    assert!(client.is_watched(), "no validation layer was loaded");
+    let used = room.device("extensions")[0].to_string();
+    for extension in [
+        "XR_KHR_composition_layer_depth",
+        "XR_KHR_visibility_mask",
+        "XR_EXT_hand_tracking",
+        "XR_EXT_local_floor",
+    ] {
+        assert!(used.contains(extension), "{extension} is not in {used}");
+    }
     room.wait_until("a known controller", |room| {
         room.has_said("profile", "/interaction_profiles/valve/index_controller")
     });
@@ -206,25 +226,14 @@ fn the_mirror_shows_the_room_and_takes_the_experimenters_keys() {
     let service = Service::start(&runtime, Compositor::Xvfb { hz: 45 });
     let out = tempfile::tempdir().expect("a temporary folder");
     let folder = out.path().join("session");
-    let display = [("DISPLAY", OsStr::new(service.display()))];
-    let mut client = start_in(&service, &folder, &display);
+    let screen = service.screen();
+    let display = [("DISPLAY", OsStr::new(screen.display()))];
+    let mut client = start_alley(&service, &folder, &display);
     let mut room = Room::enter(&service, &mut client, &folder);
-    let xdotool = |arguments: &[&str]| {
-        let output = Command::new("xdotool")
-            .args(arguments)
-            .env("DISPLAY", service.display())
-            .output()
-            .expect("xdotool starts: install the package xdotool, as scripts/test.sh does");
-        String::from_utf8_lossy(&output.stdout).trim().to_owned()
-    };
-    let window = ask_until(PATIENCE, || {
-        let found = xdotool(&["search", "--name", "what the participant sees"]);
-        (!found.is_empty()).then_some(found)
-    })
-    .expect("the mirror opens");
+    let window = screen.act(&["search", "--sync", "--name", "what the participant sees"]);
     // Until the window has been drawn it takes no keys.
     let pressed = ask_until(PATIENCE, || {
-        xdotool(&["windowfocus", &window, "key", "2"]);
+        screen.act(&["windowfocus", &window, "key", "2"]);
         room.follow(Duration::from_millis(200));
         (room.count("game_started") == 1).then_some(())
     });
@@ -233,6 +242,12 @@ fn the_mirror_shows_the_room_and_takes_the_experimenters_keys() {
         room.event("game_started").expect("just seen")["button"],
         "blue"
     );
+    // The compositor's own window, which is black, may lie over it.
+    let seen = ask_until(PATIENCE, || {
+        screen.act(&["windowraise", &window]);
+        (colours(&screen.shot()) > 60).then_some(())
+    });
+    assert!(seen.is_some(), "the mirror shows next to nothing");
     let (status, said) = client.finish();
     assert!(status.success(), "{said}");
     assert!(!said.contains("No mirror window"), "{said}");

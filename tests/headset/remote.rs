@@ -39,6 +39,10 @@ pub struct Controller {
     pub b: bool,
     /// False: as if it were switched off.
     pub is_tracked: bool,
+    /// Laid down: the runtime sees the hand instead, as long as it is tracked.
+    pub is_bare: bool,
+    /// How far all fingers are curled, 0 to 1; of a hand, whether it has a controller or not.
+    pub curl: f64,
 }
 
 impl Controller {
@@ -54,6 +58,16 @@ impl Controller {
             a: false,
             b: false,
             is_tracked: true,
+            is_bare: false,
+            curl: 0.0,
+        }
+    }
+
+    /// Closes the hand, round a controller's trigger or as it is, from 0 to 1.
+    pub fn close(&mut self, share: f64) {
+        match self.is_bare {
+            true => self.curl = share,
+            false => self.trigger = share,
         }
     }
 
@@ -62,11 +76,12 @@ impl Controller {
         put_pose(bytes, 0, self.pose);
         put(bytes, 28, &self.linear_velocity.to_array());
         put(bytes, 40, &angular_in_body.to_array());
+        put(bytes, 52, &[self.curl; 5]);
         put(bytes, 72, &[self.trigger, self.squeeze, self.squeeze_force]);
         // Hand tracking goes with the controller, as the driver has it at its start.
         let flags = [
             (104, self.is_tracked),
-            (105, self.is_tracked),
+            (105, self.is_tracked && !self.is_bare),
             (108, self.a),
             (109, self.a),
             (110, self.b),

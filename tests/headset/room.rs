@@ -39,6 +39,9 @@ pub struct Room {
     pub said: Vec<Value>,
     /// The last input that the game consumed.
     pub input: Input,
+    /// From where the runtime has a hand to where its palm is, which plays in the place of a controller that was laid down [m]; of
+    /// hands that are not turned.
+    palm: DVec3,
     /// How often the game was told that tracking space is a new one.
     pub recentred: usize,
     /// How long before its frame's instant the trigger last changed, at the last release [s].
@@ -65,6 +68,7 @@ impl Room {
             packet,
             said: Vec::new(),
             input: Input::default(),
+            palm: DVec3::ZERO,
             recentred: 0,
             released_age: None,
         };
@@ -156,13 +160,14 @@ impl Room {
     /// Moves a hand to a place in the world, at leisure.
     pub fn reach(&mut self, hand: Hand, world: DVec3) {
         let target = self.tracked(world);
-        let from = self.hand(hand).pose.position;
+        let from = self.hand(hand).pose.position + self.palm;
         let seconds = (target.distance(from) / CALM).max(0.05);
         let begun = Instant::now();
         loop {
             let share = (begun.elapsed().as_secs_f64() / seconds).min(1.0);
+            let position = from.lerp(target, share) - self.palm;
             let controller = self.hand(hand);
-            controller.pose = Pose::new(from.lerp(target, share), DQuat::IDENTITY);
+            controller.pose = Pose::new(position, DQuat::IDENTITY);
             (controller.linear_velocity, controller.angular_velocity) = (DVec3::ZERO, DVec3::ZERO);
             self.send();
             self.follow(Duration::from_millis(5));
@@ -173,6 +178,35 @@ impl Room {
         self.wait_until("the hand at its place", |room| {
             let seen = room.input.hand.map(|hand| hand.pose.position);
             seen.is_some_and(|seen| seen.distance(target) < 1e-4)
+        });
+    }
+
+    /// Lays down a hand's controller, and the other's too: the runtime sees hands from now on.
+    pub fn lay_down_controllers(&mut self, hand: Hand) {
+        for hand in [Hand::Left, Hand::Right] {
+            self.hand(hand).is_bare = true;
+        }
+        self.send();
+        let held = self.hand(hand).pose.position;
+        self.wait_until("a bare hand", |room| {
+            let seen = room.input.hand.map(|hand| hand.pose.position);
+            seen.is_some_and(|seen| seen.distance(held) > 0.01)
+        });
+        let seen = self.input.hand.expect("just seen").pose.position;
+        self.palm = seen - held;
+    }
+
+    /// Takes the controllers up again.
+    pub fn take_up_controllers(&mut self) {
+        for hand in [Hand::Left, Hand::Right] {
+            self.hand(hand).is_bare = false;
+        }
+        self.palm = DVec3::ZERO;
+        let held = self.hand(Hand::Right).pose.position;
+        self.send();
+        self.wait_until("a controller", |room| {
+            let seen = room.input.hand.map(|hand| hand.pose.position);
+            seen.is_some_and(|seen| seen.distance(held) < 1e-4)
         });
     }
 
@@ -188,19 +222,19 @@ impl Room {
             .expect("one is there");
         let above = ball.position + DVec3::Y * (ball.radius + 0.06);
         // The hand that closes is the one that plays: closing it first, away from everything, makes it so.
-        self.hand(hand).trigger = 1.0;
+        self.hand(hand).close(1.0);
         self.send();
-        let x = self.hand(hand).pose.position.x;
+        let x = self.hand(hand).pose.position.x + self.palm.x;
         self.wait_until("the hand that plays", |room| {
             let seen = room.input.hand.map(|hand| hand.pose.position.x);
             seen.is_some_and(|seen| (seen - x).abs() < 1e-4) && room.input.trigger == 1.0
         });
-        self.hand(hand).trigger = 0.0;
+        self.hand(hand).close(0.0);
         self.send();
         self.wait_until("an open hand", |room| room.input.trigger == 0.0);
         self.reach(hand, above + DVec3::Y * 0.3);
         self.reach(hand, above);
-        self.hand(hand).trigger = 1.0;
+        self.hand(hand).close(1.0);
         self.send();
         self.wait_until("a ball in the hand", |room| room.game.held().is_some());
         self.reach(hand, above + DVec3::Y * 0.3);

@@ -1,5 +1,4 @@
 use std::fs::{self, OpenOptions};
-use std::io::{BufRead, BufReader, Read};
 use std::net::{Ipv4Addr, TcpListener};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
@@ -8,11 +7,12 @@ use std::time::Duration;
 use rustix::process::Signal;
 use tempfile::TempDir;
 
-use super::ask_until;
-use super::process::Process;
+use crate::shared::ask_until;
+use crate::shared::process::Process;
+use crate::shared::screen::Screen;
 
 /// Longest wait for the service: software Vulkan on a busy machine takes seconds to start.
-const PATIENCE: Duration = Duration::from_secs(60);
+pub const PATIENCE: Duration = Duration::from_secs(60);
 /// The service's socket, in its runtime folder.
 const SOCKET: &str = "monado_comp_ipc";
 
@@ -32,7 +32,8 @@ pub enum Compositor {
 pub struct Service {
     // Before the screen: the service must not outlive what it draws on.
     process: Process,
-    screen: Option<Screen>,
+    /// What the real compositor draws on, and how often [1/s].
+    screen: Option<(Screen, u32)>,
     runtime: PathBuf,
     folder: TempDir,
     port: u16,
@@ -60,7 +61,8 @@ impl Service {
         .expect("a fresh folder");
         let screen = match compositor {
             Compositor::Null => None,
-            Compositor::Xvfb { hz } => Some(Screen::open(hz)),
+            // Room for the compositor's window.
+            Compositor::Xvfb { hz } => Some((Screen::open([960, 540]), hz)),
         };
         let process = launch(runtime, folder.path(), port, screen.as_ref());
         Self {
@@ -86,21 +88,28 @@ impl Service {
         );
     }
 
+    /// Its process number.
+    pub fn id(&mut self) -> u32 {
+        self.process.id()
+    }
+
+    /// The folder of the runtime that it is part of.
+    pub fn runtime(&self) -> &Path {
+        &self.runtime
+    }
+
     /// The remote driver's port.
     pub fn port(&self) -> u16 {
         self.port
     }
 
-    /// The display of the real compositor's screen.
+    /// The real compositor's screen.
     ///
     /// # Panics
     /// With the null compositor, which has none.
-    pub fn display(&self) -> &str {
-        &self
-            .screen
-            .as_ref()
-            .expect("a compositor with a screen")
-            .display
+    pub fn screen(&self) -> &Screen {
+        let (screen, _) = self.screen.as_ref().expect("a compositor with a screen");
+        screen
     }
 
     /// A command that runs `program` with the runtime's libraries, as a client of this service.
@@ -149,46 +158,6 @@ impl Service {
     pub fn cont(&mut self) {
         self.process.signal(Signal::CONT);
     }
-
-    /// Runs `monado-ctl`: without arguments it lists clients and devices, `-f ID` gives a client the focus, `-i ID` cuts a
-    /// client's input or gives it back, `-p ID` makes it the one that is shown, `-c` recentres. What it says.
-    ///
-    /// # Panics
-    /// When it fails, or gets no answer from the service.
-    pub fn ctl(&self, arguments: &[&str]) -> String {
-        let mut command = self.client_command(&self.runtime.join("root/usr/bin/monado-ctl"));
-        command
-            .args(arguments)
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped());
-        let mut process = Process::start("monado-ctl", &mut command);
-        // It says a few lines, which a pipe holds: reading can wait for its end.
-        let ended = process.ended_within(PATIENCE);
-        let ended =
-            ended.unwrap_or_else(|| panic!("the service does not answer monado-ctl {arguments:?}"));
-        let mut said = String::new();
-        let mut complaint = String::new();
-        let child = process.child();
-        let (output, errors) = (child.stdout.take(), child.stderr.take());
-        output
-            .expect("piped")
-            .read_to_string(&mut said)
-            .expect("monado-ctl writes text");
-        errors
-            .expect("piped")
-            .read_to_string(&mut complaint)
-            .expect("monado-ctl writes text");
-        assert!(
-            ended.success(),
-            "monado-ctl {arguments:?}: {ended}\n{said}{complaint}"
-        );
-        said
-    }
-
-    /// The number by which `monado-ctl` knows the program that calls itself `name`; none while it is not connected.
-    pub fn client_id(&self, name: &str) -> Option<u32> {
-        client_id(&self.ctl(&[]), name)
-    }
 }
 
 impl Drop for Service {
@@ -197,19 +166,6 @@ impl Drop for Service {
             eprintln!("the service's log:\n{}", self.log());
         }
     }
-}
-
-/// The number of the client called `name`, in what `monado-ctl` lists: fields between tabs, `id: 3` first, the name last.
-fn client_id(listing: &str, name: &str) -> Option<u32> {
-    let clients = listing
-        .lines()
-        .skip_while(|line| !line.starts_with("Clients"));
-    let mut clients = clients.take_while(|line| !line.starts_with("Devices"));
-    clients.find_map(|line| {
-        let mut fields = line.trim().split('\t');
-        let id = fields.next()?.strip_prefix("id: ")?;
-        (fields.next_back() == Some(name)).then(|| id.parse().ok())?
-    })
 }
 
 fn run_folder(folder: &Path) -> PathBuf {
@@ -222,7 +178,7 @@ fn read_log(folder: &Path) -> String {
 }
 
 /// Starts the service and waits until its socket and the remote driver's port are open.
-fn launch(runtime: &Path, folder: &Path, port: u16, screen: Option<&Screen>) -> Process {
+fn launch(runtime: &Path, folder: &Path, port: u16, screen: Option<&(Screen, u32)>) -> Process {
     let socket = run_folder(folder).join(SOCKET);
     // A killed service leaves its socket behind; the next one's must not be mistaken for it.
     if socket.exists() {
@@ -246,10 +202,10 @@ fn launch(runtime: &Path, folder: &Path, port: u16, screen: Option<&Screen>) -> 
         .stdin(Stdio::null());
     match screen {
         None => command.env("XRT_COMPOSITOR_NULL", "1"),
-        Some(screen) => command
-            .env("DISPLAY", &screen.display)
+        Some((screen, hz)) => command
+            .env("DISPLAY", screen.display())
             .env("XRT_COMPOSITOR_FORCE_XCB", "1")
-            .env("XRT_COMPOSITOR_DEFAULT_FRAMERATE", screen.hz.to_string())
+            .env("XRT_COMPOSITOR_DEFAULT_FRAMERATE", hz.to_string())
             // At once, so that a screen that does not do fails the start and not the first frame.
             .env("XRT_COMPOSITOR_DISABLE_DEFERRED", "1")
             // A quarter of what it recommends, 240 by 270 for an eye: software Vulkan must hold the rate.
@@ -280,41 +236,6 @@ fn launch(runtime: &Path, folder: &Path, port: u16, screen: Option<&Screen>) -> 
     process
 }
 
-/// A screen in memory.
-struct Screen {
-    _server: Process,
-    display: String,
-    hz: u32,
-}
-
-impl Screen {
-    fn open(hz: u32) -> Self {
-        let mut command = Command::new("Xvfb");
-        command
-            .args(["-displayfd", "1", "-nolisten", "tcp"])
-            // Its socket belongs to this network, and not to a folder that screens of other networks share: there it
-            // would take the place of one with the same number.
-            .args(["-nolisten", "unix"])
-            // Room for the compositor's window of 960 by 540.
-            .args(["-screen", "0", "960x540x24"])
-            .stdin(Stdio::null())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null());
-        let mut server = Process::start("Xvfb (package xvfb)", &mut command);
-        let output = server.child().stdout.take().expect("piped");
-        let mut number = String::new();
-        BufReader::new(output)
-            .read_line(&mut number)
-            .expect("Xvfb writes text");
-        assert!(number.ends_with('\n'), "Xvfb ends without a display");
-        Self {
-            _server: server,
-            display: format!(":{}", number.trim()),
-            hz,
-        }
-    }
-}
-
 /// A port that nobody listens on now.
 fn free_port() -> u16 {
     let listener = TcpListener::bind((Ipv4Addr::UNSPECIFIED, 0)).expect("a free port");
@@ -323,30 +244,11 @@ fn free_port() -> u16 {
 
 #[cfg(test)]
 mod tests {
+    use std::io::Read;
+
     use super::super::machine::runtime;
     use super::super::remote::{Packet, Remote};
     use super::*;
-
-    #[test]
-    fn client_id_is_found_by_the_programs_name() {
-        let listing = "Clients:\n\
-             \tid: 1\tact: 0\tdisp: 0\tfoc: 0\tio: 1\tovly: 0\tz: 0\tpid: 7\tmonado-ctl\n\
-             \tid: 12\tact: 1\tdisp: 1\tfoc: 1\tio: 1\tovly: 0\tz: 0\tpid: 8\tbowling\n\
-             \nDevices:\n\tid: 0\tname: 1\t\"Remote HMD\"\n";
-        assert_eq!(client_id(listing, "bowling"), Some(12));
-        assert_eq!(client_id(listing, "bowl"), None);
-        assert_eq!(client_id(listing, "\"Remote HMD\""), None);
-    }
-
-    #[test]
-    fn the_service_lists_what_it_drives_and_who_asks() {
-        let Some(runtime) = runtime() else { return };
-        let service = Service::start(&runtime, Compositor::Null);
-        let listing = service.ctl(&[]);
-        assert!(listing.contains("\"Remote HMD\""), "{listing}");
-        assert!(service.client_id("monado-ctl").is_some(), "{listing}");
-        assert_eq!(service.client_id("nobody"), None);
-    }
 
     #[test]
     fn the_service_stops_and_goes_on() {

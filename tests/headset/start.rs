@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use crate::client::journal_lines;
 use crate::machine::runtime;
-use crate::play::start;
+use crate::play::start_alley;
 use crate::room::PATIENCE;
 use crate::service::{Compositor, Service};
 
@@ -23,7 +23,7 @@ fn a_head_tracked_picture_comes_within_four_seconds() {
         let out = tempfile::tempdir().expect("a temporary folder");
         let folder = out.path().join("session");
         let begun = Instant::now();
-        let client = start(&service, &folder);
+        let client = start_alley(&service, &folder, &[]);
         let mut journal = journal_lines(&folder, PATIENCE);
         let mut head_is_tracked = false;
         loop {

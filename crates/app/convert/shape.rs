@@ -2,6 +2,8 @@
 
 use game::{Game, Model};
 
+use crate::scenery::hand::Fingers;
+
 /// A hand nearer than this to a button points at it [m].
 const POINTS_WITHIN: f64 = 0.3;
 /// A trigger that is pulled farther than this closes the hand, also beside a button.
@@ -16,6 +18,13 @@ pub enum HandShape {
     Pointing,
     /// Round what it holds.
     Holding(Model),
+    /// As a tracker has the fingers.
+    Bent {
+        /// How they are bent.
+        fingers: Fingers,
+        /// A left hand; the others are right ones.
+        is_left: bool,
+    },
 }
 
 impl HandShape {
@@ -29,6 +38,14 @@ impl HandShape {
             return Self::Pointing;
         }
         Self::Closing(trigger)
+    }
+
+    /// As these fingers are bent, those of a left hand or a right one, unless it holds something.
+    pub fn bent(self, tracked: Option<(Fingers, bool)>) -> Self {
+        match (self, tracked) {
+            (Self::Holding(_), _) | (_, None) => self,
+            (_, Some((fingers, is_left))) => Self::Bent { fingers, is_left },
+        }
     }
 
     /// The ball that it holds.

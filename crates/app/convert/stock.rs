@@ -13,19 +13,17 @@ use renderer::{
 };
 
 use super::board::{Board, Scores};
+use super::hand::Hands;
 use super::light::{lamps, light};
 use super::screen::Screen;
 use crate::again::Moment;
-use crate::scenery::hand::{Fingers, hand};
 use crate::scenery::{self, mesh};
-use looks::{Looks, plain};
+use looks::Looks;
+pub(super) use looks::plain;
 
 /// Balls of the rack in their order; later ones begin again.
 pub(super) const BALL_TEXTURES: [&str; 4] =
     ["ball_blue", "ball_green", "ball_orange", "ball_violet"];
-
-/// Steps in which a hand is drawn from open to closed: finer than a finger moves between two pictures.
-const CLOSING_STEPS: usize = 8;
 
 /// A mesh and its look.
 #[derive(Debug, Clone, Copy)]
@@ -42,16 +40,6 @@ impl Piece {
             world_from_mesh,
         }
     }
-}
-
-/// The hand in its poses.
-#[derive(Debug)]
-pub(super) struct Hands {
-    /// From open to closed.
-    pub closing: Vec<MeshId>,
-    pub pointing: MeshId,
-    pub gripping: MeshId,
-    pub skin: Material,
 }
 
 /// Everything that is drawn, held by a renderer.
@@ -120,7 +108,7 @@ impl Stock {
             ball,
             balls,
             ball_holes: assets.ball_holes()?,
-            hands: assets.hands()?,
+            hands: assets.hands(config)?,
             buttons: [
                 assets.piece("button_round", plain([0.55, 0.02, 0.02], 0.3))?,
                 assets.piece("button_square", plain([0.02, 0.06, 0.55], 0.3))?,
@@ -202,10 +190,10 @@ fn enclosure(config: &Config) -> Enclosure {
 }
 
 /// The folder of assets, on its way into a renderer.
-struct Assets<'a> {
+pub(super) struct Assets<'a> {
     renderer: &'a mut Renderer,
     root: &'a Path,
-    shows: &'a ShowsConfig,
+    pub(super) shows: &'a ShowsConfig,
 }
 
 impl Assets<'_> {
@@ -230,7 +218,7 @@ impl Assets<'_> {
             .map_err(|error| unusable(&error))
     }
 
-    fn built(&mut self, mesh: &mesh::Mesh) -> Result<MeshId> {
+    pub(super) fn built(&mut self, mesh: &mesh::Mesh) -> Result<MeshId> {
         Ok(self.renderer.add_mesh(&mesh.to_data())?)
     }
 
@@ -282,21 +270,6 @@ impl Assets<'_> {
         }
         let dark = plain([0.01, 0.01, 0.01], 0.8);
         Ok(Some(self.piece("ball_holes", dark)?))
-    }
-
-    fn hands(&mut self) -> Result<Hands> {
-        let round = if self.shows.low_polygon { 4 } else { 8 };
-        let mut closing = Vec::new();
-        for step in 0..=CLOSING_STEPS {
-            let closed = step as f32 / CLOSING_STEPS as f32;
-            closing.push(self.built(&hand(&Fingers::closing(closed), round))?);
-        }
-        Ok(Hands {
-            closing,
-            pointing: self.built(&hand(&Fingers::pointing(), round))?,
-            gripping: self.built(&hand(&Fingers::gripping(), round))?,
-            skin: plain([0.62, 0.40, 0.29], 0.6),
-        })
     }
 
     fn scenery(&mut self, config: &Config, looks: &Looks) -> Result<Vec<Instance>> {

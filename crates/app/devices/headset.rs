@@ -1,5 +1,6 @@
 //! From what a headset reads to what the game consumes: which hand throws, how many steps are due.
 
+use crate::scenery::hand::Fingers;
 use game::{Input, Tracked, TriggerChange, Velocity};
 use physics::Pose;
 use renderer::headset::{Change, HandReading, Readings, Side, TrackedPose};
@@ -20,6 +21,8 @@ pub struct Participant {
     before: [f64; 2],
     /// Hands whose buttons were down when hands changed roles: they mean nothing until all are up.
     ignored: [bool; 2],
+    /// Whether the hand that throws was bare in the last frame.
+    was_bare: bool,
     /// Time of display of the last frame that was played [ns].
     played_ns: Option<i64>,
     /// Steps by which the alley is ahead of the display, because steps are whole, from 0 to 1.
@@ -36,6 +39,7 @@ impl Participant {
             throwing: Side::Right,
             before: [0.0; 2],
             ignored: [false; 2],
+            was_bare: false,
             played_ns: None,
             ahead: 0.0,
             recentre_ns: None,
@@ -75,13 +79,17 @@ impl Participant {
         is_holding: bool,
     ) -> Input {
         let recentred = self.recentre_ns.take_if(|at| *at <= display_ns).is_some();
-        let hands = &readings.hands;
+        let hands = &readings.hands.map(in_use);
         let other = self.throwing.other();
         let is_free = !is_holding && closure(&hands[self.throwing as usize]) < TAKES_OVER;
-        if is_free && closure(&hands[other as usize]) >= TAKES_OVER {
+        let takes_over = is_free && closure(&hands[other as usize]) >= TAKES_OVER;
+        if takes_over {
             self.throwing = other;
             self.ignored = [true; 2];
-            // One frame without a hand: it has not moved from one side to the other, and the old one's grip is over.
+        }
+        if self.changes_kind(&hands[self.throwing as usize], is_holding) || takes_over {
+            // One frame without a hand: it has not moved from one side to the other, or from a controller's grip to a palm, and
+            // the old one's grip is over.
             return Input {
                 head: readings.head.map(tracked),
                 recentred,
@@ -117,6 +125,26 @@ impl Participant {
         }
     }
 
+    /// Whether the hand that throws has put its controller away or taken it up. What the one held the other does not take over:
+    /// until the game has let it fall, the hand counts as lost.
+    fn changes_kind(&mut self, hand: &HandReading, is_holding: bool) -> bool {
+        let is_bare = match hand.grip {
+            Some(_) => hand.bare.is_some(),
+            None => self.was_bare,
+        };
+        let changes = is_bare != self.was_bare;
+        if !is_holding {
+            self.was_bare = is_bare;
+        }
+        changes
+    }
+
+    /// The fingers of the hand that throws, and whether it is the left one, where it is bare.
+    pub fn fingers(&self, readings: &Readings) -> Option<(Fingers, bool)> {
+        let bare = readings.hands[self.throwing as usize].bare?;
+        Some((Fingers::tracked(&bare.bends), self.throwing == Side::Left))
+    }
+
     /// Whole steps up to the time of display, or less than one beyond it.
     fn due(&mut self, display_ns: i64, period_s: f64) -> u32 {
         let elapsed = self
@@ -127,6 +155,19 @@ impl Participant {
         let steps = (wanted - JITTER).ceil().max(0.0);
         self.ahead = (steps - wanted).clamp(0.0, 1.0);
         steps as u32
+    }
+}
+
+/// A hand as it plays: a bare one is where its palm is, holds by a fist or a pinch, and has no buttons. When it closed is known to a
+/// frame only, as of a device without a trigger.
+fn in_use(hand: HandReading) -> HandReading {
+    let Some(bare) = hand.bare else { return hand };
+    HandReading {
+        grip: Some(bare.palm),
+        bare: hand.bare,
+        trigger: bare.grasp,
+        squeeze: bare.pinch,
+        ..HandReading::default()
     }
 }
 
@@ -156,157 +197,4 @@ fn tracked(pose: TrackedPose) -> Tracked {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use glam::{DQuat, DVec3};
-
-    fn grip(x: f64) -> Option<TrackedPose> {
-        Some(TrackedPose {
-            position: DVec3::new(x, 1.0, 0.0),
-            rotation: DQuat::IDENTITY,
-            velocity: None,
-        })
-    }
-
-    fn readings(left: f64, right: f64) -> Readings {
-        let mut readings = Readings::default();
-        for (hand, (x, trigger)) in readings.hands.iter_mut().zip([(-0.3, left), (0.3, right)]) {
-            hand.grip = grip(x);
-            hand.trigger = trigger;
-        }
-        readings
-    }
-
-    #[test]
-    fn input_follows_the_hand_that_closes_and_stays_with_what_it_holds() {
-        let mut participant = Participant::new(720.0);
-        let mut x = |left, right, holding| {
-            let input = participant.input(&readings(left, right), 0, 0.01, holding);
-            input.hand.map(|hand| hand.pose.position.x)
-        };
-        assert_eq!(x(0.0, 0.0, false), Some(0.3));
-        assert_eq!(x(0.9, 0.0, false), None, "no hand moves from right to left");
-        assert_eq!(x(0.9, 0.0, false), Some(-0.3));
-        assert_eq!(
-            x(0.9, 0.9, true),
-            Some(-0.3),
-            "the ball is in the left hand"
-        );
-        assert_eq!(x(0.0, 0.9, true), Some(-0.3), "until it is let go");
-        assert_eq!(x(0.0, 0.9, false), None);
-        assert_eq!(x(0.0, 0.9, false), Some(0.3));
-    }
-
-    #[test]
-    fn buttons_of_the_other_hand_choose_and_those_of_the_throwing_hand_walk() {
-        let mut participant = Participant::new(720.0);
-        let mut both = readings(0.0, 0.0);
-        for hand in &mut both.hands {
-            (hand.forward, hand.red) = (true, true);
-        }
-        both.hands[0].forward = false;
-        let input = participant.input(&both, 0, 0.01, false);
-        assert!(input.walk_forward && input.press_red && !input.press_blue);
-        both.hands[0].red = false;
-        assert!(!participant.input(&both, 0, 0.01, false).press_red);
-    }
-
-    /// A thumb that walks while the other hand takes over must not choose a game.
-    #[test]
-    fn buttons_that_are_down_when_hands_change_roles_mean_nothing() {
-        let mut participant = Participant::new(720.0);
-        let mut both = readings(0.9, 0.0);
-        (both.hands[1].forward, both.hands[1].blue) = (true, true);
-        for _ in 0..3 {
-            assert!(!participant.input(&both, 0, 0.01, false).press_blue);
-        }
-        (both.hands[1].forward, both.hands[1].blue) = (false, false);
-        participant.input(&both, 0, 0.01, false);
-        (both.hands[1].forward, both.hands[1].blue) = (true, true);
-        assert!(participant.input(&both, 0, 0.01, false).press_blue);
-    }
-
-    /// 75 Hz does not divide 720: the steps of any stretch of frames are those of its time, to one.
-    #[test]
-    fn steps_follow_the_clock_at_any_rate() {
-        for hz in [45.0, 72.0, 75.0, 90.0, 120.0] {
-            let mut participant = Participant::new(720.0);
-            let (mut steps, mut longest) = (0, 0);
-            for frame in 0..1000 {
-                let display_ns = (f64::from(frame) / hz * 1e9) as i64;
-                let input = participant.input(&readings(0.0, 0.0), display_ns, 1.0 / hz, false);
-                longest = longest.max(input.steps);
-                steps += input.steps;
-            }
-            let exact = 1000.0 / hz * 720.0;
-            assert!(
-                (f64::from(steps) - exact).abs() <= 1.0,
-                "{hz} Hz: {steps}, not {exact}"
-            );
-            assert!(f64::from(longest) < 720.0 / hz + 1.0);
-        }
-    }
-
-    #[test]
-    fn a_pause_stops_time_and_hides_the_hand() {
-        let mut participant = Participant::new(720.0);
-        participant.input(&readings(0.0, 0.0), 0, 0.01, false);
-        let paused = participant.pause(&readings(0.0, 0.0));
-        assert_eq!((paused.steps, paused.hand), (0, None));
-        let ten_seconds = 10_000_000_000;
-        let input = participant.input(&readings(0.0, 0.0), ten_seconds, 1.0 / 90.0, false);
-        assert_eq!(input.steps, 8, "what passed meanwhile is not made up for");
-    }
-
-    /// The runtime tells of a new space ahead of its first frame; the game must hear of it in that frame, and once.
-    #[test]
-    fn a_new_space_is_told_with_the_first_frame_in_it() {
-        let mut participant = Participant::new(720.0);
-        let mut with_change = readings(0.0, 0.0);
-        with_change.hands[1].changes[0] = Some(Change {
-            time_ns: 1_000_000_000,
-            grip: grip(0.1),
-        });
-        participant.recentre(1_020_000_000);
-        let mut told = |milliseconds: i64| {
-            let input = participant.input(&with_change, milliseconds * 1_000_000, 0.01, true);
-            (input.recentred, input.trigger_change.is_some())
-        };
-        assert_eq!(told(1_010), (false, true));
-        assert_eq!(
-            told(1_020),
-            (true, false),
-            "the old pose is of the old space"
-        );
-        assert_eq!(told(1_030), (false, true));
-    }
-
-    /// Nothing is played in a pause: the first frame behind it hears of what happened meanwhile.
-    #[test]
-    fn a_new_space_in_a_pause_is_told_behind_it() {
-        let mut participant = Participant::new(720.0);
-        participant.recentre(5);
-        assert!(!participant.pause(&readings(0.0, 0.0)).recentred);
-        assert!(
-            participant
-                .input(&readings(0.0, 0.0), 10, 0.01, false)
-                .recentred
-        );
-    }
-
-    #[test]
-    fn a_change_is_aged_from_the_time_of_display() {
-        let mut participant = Participant::new(720.0);
-        let mut with_change = readings(0.0, 0.0);
-        with_change.hands[1].changes[0] = Some(Change {
-            time_ns: 1_000_000_000,
-            grip: grip(0.1),
-        });
-        let mut age = |display_ns| {
-            let input = participant.input(&with_change, display_ns, 0.01, true);
-            input.trigger_change.map(|change| change.age_s)
-        };
-        assert!((age(1_030_000_000).expect("a recent change") - 0.03).abs() < 1e-12);
-        assert_eq!(age(2_000_000_000), None, "too old to be believed");
-    }
-}
+mod tests;

@@ -106,7 +106,7 @@ impl Mirror {
             let game = session.game();
             Ok((
                 game.visible(),
-                convert::HandShape::of(game),
+                convert::HandShape::of(game).bent(self.shared.fingers()),
                 convert::Scores::of(game),
             ))
         })?;

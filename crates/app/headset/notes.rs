@@ -6,6 +6,9 @@ use serde_json::json;
 /// A note as the journal keeps it.
 pub fn line(note: &Note) -> serde_json::Value {
     match note {
+        Note::Began { extensions, images } => {
+            json!({ "extensions": extensions, "swapchain_images": images })
+        }
         Note::Focus(focus) => json!({ "focus": format!("{focus:?}").to_lowercase() }),
         Note::Exit => json!({ "exit": true }),
         Note::Profile { side, profile } => {

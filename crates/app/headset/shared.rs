@@ -1,7 +1,7 @@
 //! What the runtime's thread and the main thread share.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use anyhow::Result;
@@ -9,7 +9,13 @@ use game::Button;
 use renderer::View;
 
 use crate::again::Moment;
+use crate::scenery::hand::Fingers;
 use crate::session::Session;
+
+/// What a thread that panicked left is as whole as before: only single values are put in.
+fn locked<T>(value: &Mutex<T>) -> MutexGuard<'_, T> {
+    value.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// What the two threads share.
 pub struct Shared {
@@ -22,6 +28,8 @@ pub struct Shared {
     pub left_eye: Mutex<Option<View>>,
     /// What the screen over the lane shows again.
     pub again: Mutex<Option<Moment>>,
+    /// The fingers of a bare hand that plays, and whether it is the left one.
+    pub fingers: Mutex<Option<(Fingers, bool)>>,
     /// The experimenter's keys for Red and Blue: pressed since the last frame.
     pub keys: [AtomicBool; 2],
     pub stop: Arc<AtomicBool>,
@@ -50,16 +58,27 @@ impl Shared {
 
     /// Tells the mirror what the screen over the lane shows.
     pub fn set_again(&self, moment: Option<Moment>) {
-        *self.again.lock().unwrap_or_else(PoisonError::into_inner) = moment;
+        *locked(&self.again) = moment;
     }
 
     pub fn again(&self) -> Option<Moment> {
-        let again = self.again.lock();
-        again.unwrap_or_else(PoisonError::into_inner).clone()
+        locked(&self.again).clone()
     }
 
     pub fn left_eye(&self) -> Option<View> {
-        *self.left_eye.lock().unwrap_or_else(PoisonError::into_inner)
+        *locked(&self.left_eye)
+    }
+
+    pub fn see(&self, left_eye: Option<View>) {
+        *locked(&self.left_eye) = left_eye;
+    }
+
+    pub fn fingers(&self) -> Option<(Fingers, bool)> {
+        *locked(&self.fingers)
+    }
+
+    pub fn see_fingers(&self, fingers: Option<(Fingers, bool)>) {
+        *locked(&self.fingers) = fingers;
     }
 
     pub fn must_stop(&self) -> bool {

@@ -5,7 +5,7 @@
 
 use std::collections::VecDeque;
 
-use renderer::headset::{Change, HandReading, Readings, TrackedPose};
+use renderer::headset::{BareHand, Change, HandReading, Readings, TrackedPose};
 use serde_json::{Value, json};
 
 /// How far before a release readings are kept [ns].
@@ -98,6 +98,16 @@ fn hand(hand: &HandReading) -> Value {
         "trigger": hand.trigger,
         "squeeze": hand.squeeze,
         "changes": hand.changes.map(|change| change.map(changed)),
+        "bare": hand.bare.map(bare),
+    })
+}
+
+fn bare(hand: BareHand) -> Value {
+    json!({
+        "palm": pose(hand.palm),
+        "bends": hand.bends,
+        "grasp": hand.grasp,
+        "pinch": hand.pinch,
     })
 }
 

@@ -16,6 +16,16 @@ pub struct Fingers {
 }
 
 impl Fingers {
+    /// As a tracker has them: of index, middle, ring and little finger, then of the thumb [rad].
+    pub fn tracked(bends: &[[f64; 3]; 5]) -> Self {
+        let [index, middle, ring, little, thumb] =
+            bends.map(|finger| finger.map(|bend| bend as f32));
+        Self {
+            bends: [index, middle, ring, little],
+            thumb,
+        }
+    }
+
     /// From open, 0, to closed as round a ball, 1.
     pub fn closing(closed: f32) -> Self {
         let curl = 0.55 * closed;
@@ -68,6 +78,15 @@ const FINGERS: [(f32, f32, f32); 4] = [
 
 /// A right hand about its palm: fingers along -z, palm down, thumb to the left; `round` segments go round a finger.
 pub fn hand(fingers: &Fingers, round: u32) -> Mesh {
+    let mut hand = palm(round);
+    for bone in bones(fingers).as_flattened() {
+        hand.append(&bone.mesh(round), bone.hand_from_bone);
+    }
+    hand
+}
+
+/// A hand without its fingers.
+pub fn palm(round: u32) -> Mesh {
     let mut hand = Mesh::default();
     let palm = sphere(1.0, round + 6, round);
     hand.append(&palm, Affine3A::from_scale(PALM_HALF));
@@ -77,39 +96,59 @@ pub fn hand(fingers: &Fingers, round: u32) -> Mesh {
         &wrist,
         Affine3A::from_rotation_translation(along_z, Vec3::new(0.0, 0.0, 0.065)),
     );
-    for ((side, length, radius), bends) in FINGERS.into_iter().zip(fingers.bends) {
-        let root = Vec3::new(side, 0.0, -0.044 + 6.0 * side * side);
-        finger(&mut hand, root, 0.0, [length, radius], bends, round);
-    }
-    let root = Vec3::new(-0.036, -0.004, 0.010);
-    finger(&mut hand, root, 0.9, [0.052, 0.0105], fingers.thumb, round);
     hand
 }
 
+/// A part of a finger between two of its joints.
+#[derive(Clone, Copy, Debug)]
+pub struct Bone {
+    /// Where it lies; its own y runs along it.
+    pub hand_from_bone: Affine3A,
+    /// Half its length [m].
+    half: f32,
+    /// [m]
+    radius: f32,
+}
+
+impl Bone {
+    /// Its shape, about its middle.
+    pub fn mesh(&self, round: u32) -> Mesh {
+        capsule(self.radius, self.half, round)
+    }
+}
+
+/// From the palm outward: of index, middle, ring and little finger, then of the thumb.
+pub fn bones(fingers: &Fingers) -> [[Bone; 3]; 5] {
+    std::array::from_fn(|index| match FINGERS.get(index) {
+        Some(&(side, length, radius)) => {
+            let root = Vec3::new(side, 0.0, -0.044 + 6.0 * side * side);
+            finger(root, 0.0, [length, radius], fingers.bends[index])
+        }
+        None => {
+            let root = Vec3::new(-0.036, -0.004, 0.010);
+            finger(root, 0.9, [0.052, 0.0105], fingers.thumb)
+        }
+    })
+}
+
 /// Three phalanges from `root`, turned by `yaw` outward and bent downward joint by joint.
-fn finger(
-    hand: &mut Mesh,
-    root: Vec3,
-    yaw: f32,
-    [length, radius]: [f32; 2],
-    bends: [f32; 3],
-    round: u32,
-) {
+fn finger(root: Vec3, yaw: f32, [length, radius]: [f32; 2], bends: [f32; 3]) -> [Bone; 3] {
+    const SHARES: [f32; 3] = [0.45, 0.32, 0.23];
     let along_z = Quat::from_rotation_x(FRAC_PI_2);
     let mut joint = root;
     let mut bend = 0.0;
-    for (share, more) in [0.45, 0.32, 0.23].into_iter().zip(bends) {
-        bend += more;
+    std::array::from_fn(|index| {
+        bend += bends[index];
         let turn = Quat::from_rotation_y(yaw) * Quat::from_rotation_x(-bend);
-        let half = 0.5 * share * length;
-        let phalanx = capsule(radius, half, round);
+        let half = 0.5 * SHARES[index] * length;
         let middle = joint + turn * (Vec3::NEG_Z * half);
-        hand.append(
-            &phalanx,
-            Affine3A::from_rotation_translation(turn * along_z, middle),
-        );
         joint += turn * (Vec3::NEG_Z * 2.0 * half);
-    }
+        Bone {
+            hand_from_bone: Affine3A::from_rotation_translation(turn * along_z, middle),
+            half,
+            radius,
+        }
+    })
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use image::RgbaImage;
 
 use crate::passes::lit::COLOR_FORMAT;
+use crate::renderer::EyeTarget;
 use crate::{Gpu, RenderError, Renderer, Scene, View, texture};
 
 impl Renderer {
@@ -20,6 +21,7 @@ impl Renderer {
         height: u32,
     ) -> Result<Vec<RgbaImage>, RenderError> {
         self.prepare(scene, views.iter().copied(), [width, height])?;
+        self.fit_targets([width, height], None);
         if views.is_empty() {
             return Ok(Vec::new());
         }
@@ -30,7 +32,7 @@ impl Renderer {
         let mut encoder = device.create_command_encoder(&Default::default());
         self.record_shadow(&mut encoder);
         for index in 0..views.len() {
-            self.record_eye(&mut encoder, index, &target_view);
+            self.record_eye(&mut encoder, index, EyeTarget::picture(&target_view));
             readback.copy(&mut encoder, &target, index);
         }
         self.gpu.queue.submit([encoder.finish()]);

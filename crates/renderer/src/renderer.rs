@@ -3,12 +3,15 @@
 mod batches;
 mod check;
 mod library;
+mod record;
 
 use glam::Vec4;
 use image::{Rgba, RgbaImage};
 
-use crate::passes::lit::{LitDraw, LitInputs, LitPass, Shading, Targets};
-use crate::passes::mirror::{self, MirrorDraw, MirrorPass};
+use crate::passes::depth::DepthPass;
+use crate::passes::hidden::HiddenPass;
+use crate::passes::lit::{LitInputs, LitPass, Shading, Targets};
+use crate::passes::mirror::{self, MirrorPass};
 use crate::passes::shadow::{LightFrame, ShadowPass};
 use crate::passes::{EYE_STRIDE, GpuMesh};
 use crate::scene::Scene;
@@ -17,6 +20,7 @@ use crate::texture::{self, Texture};
 use crate::uniforms::{EyeRaw, LightingRaw};
 use crate::{Gpu, RenderError, View};
 use batches::{Frame, instance_buffer};
+pub(crate) use record::EyeTarget;
 
 /// Most views in one frame.
 pub const MAX_VIEWS: usize = 4;
@@ -77,6 +81,10 @@ pub struct Renderer {
     /// One for each shading that was called for.
     lit: Vec<LitPass>,
     targets: Option<Targets>,
+    /// Made when somebody first wants an eye's depth.
+    depth: Option<DepthPass>,
+    /// Made when there is something that an eye does not see.
+    hidden: Option<HiddenPass>,
     frame: Frame,
 }
 
@@ -126,6 +134,8 @@ impl Renderer {
             mirror: None,
             lit: Vec::new(),
             targets: None,
+            depth: None,
+            hidden: None,
             frame: Frame::default(),
             gpu: gpu.clone(),
         })
@@ -146,35 +156,14 @@ impl Renderer {
         let mut names = Vec::new();
         names.extend(self.shadow.as_ref().map(|_| "shadow"));
         names.extend(self.mirror.as_ref().map(|_| "mirror"));
+        names.extend(self.depth.as_ref().map(|_| "depth"));
+        names.extend(self.hidden.as_ref().map(|_| "hidden"));
         names.extend(self.lit.iter().map(|pass| match pass.shading {
             Shading::Flat => "flat",
             Shading::Smooth(lookups) if lookups.occlusion => "lit with occlusion",
             Shading::Smooth(_) => "lit",
         }));
         names
-    }
-
-    /// Records the passes that draw `scene` for each view into its target.
-    ///
-    /// Targets are single-layer, `Rgba8UnormSrgb`, of `size` pixels and usable as render attachments. Nothing is
-    /// submitted; the next call must come after the encoder's submission.
-    ///
-    /// # Errors
-    /// If the scene or a view cannot be drawn; nothing is recorded then.
-    pub fn record(
-        &mut self,
-        encoder: &mut wgpu::CommandEncoder,
-        scene: &Scene,
-        views: &[(View, &wgpu::TextureView)],
-        size: [u32; 2],
-    ) -> Result<(), RenderError> {
-        let only_views = views.iter().map(|(view, _)| *view);
-        self.prepare(scene, only_views, size)?;
-        self.record_shadow(encoder);
-        for (index, (_, target)) in views.iter().enumerate() {
-            self.record_eye(encoder, index, target);
-        }
-        Ok(())
     }
 
     /// Checks the scene and sends the frame's data to the device.
@@ -202,14 +191,20 @@ impl Renderer {
         self.frame.background = scene.background;
         self.fit_passes(scene, light.as_ref(), size);
         self.write_uniforms(scene, &eyes, light.as_ref(), size);
-        if self
-            .targets
-            .as_ref()
-            .is_none_or(|targets| targets.size != size)
-        {
-            self.targets = Some(Targets::new(&self.gpu.device, size, self.settings.samples));
-        }
         Ok(())
+    }
+
+    /// Makes what is drawn into of this size, unless it is there; with a format, what brings the depth into images of it too.
+    pub(crate) fn fit_targets(&mut self, size: [u32; 2], depth: Option<wgpu::TextureFormat>) {
+        let has_size = |targets: &Targets| targets.size == size;
+        let has_depth = depth.is_none() || self.depth.as_ref().map(|pass| pass.format) == depth;
+        if self.targets.as_ref().is_some_and(has_size) && has_depth {
+            return;
+        }
+        let (device, samples) = (&self.gpu.device, self.settings.samples);
+        let targets = Targets::new(device, size, samples, depth.is_some());
+        self.depth = depth.map(|format| DepthPass::new(device, &targets.depth, samples, format));
+        self.targets = Some(targets);
     }
 
     /// What this frame looks up: what the settings allow and the scene calls for.
@@ -298,62 +293,6 @@ impl Renderer {
         let map_size = self.shadow.as_ref().map(|shadow| shadow.map.size);
         let lighting = LightingRaw::new(scene, light, map_size);
         queue.write_buffer(&self.lighting, 0, bytemuck::bytes_of(&lighting));
-    }
-
-    pub(crate) fn record_shadow(&self, encoder: &mut wgpu::CommandEncoder) {
-        let is_shadowed = self.frame.lookups.is_some_and(|lookups| lookups.shadows);
-        if let (true, Some(shadow)) = (is_shadowed, &self.shadow) {
-            let offset = eye_offset(LIGHT_EYE) as u32;
-            let batches = &self.frame.batches;
-            shadow.record(encoder, offset, &self.instances, batches, &self.meshes);
-        }
-    }
-
-    /// The image in the floor for one eye; only that eye's lit pass may follow before the next one's.
-    fn record_mirror(&self, encoder: &mut wgpu::CommandEncoder, index: usize) {
-        let is_glossy = self.frame.lookups.is_some_and(|lookups| lookups.mirror);
-        let Some(mirror) = self.mirror.as_ref().filter(|_| is_glossy) else {
-            return;
-        };
-        mirror.record(
-            encoder,
-            &MirrorDraw {
-                eye_offset: eye_offset(MAX_VIEWS + index) as u32,
-                background: self.frame.background,
-                instances: &self.instances,
-                batches: &self.frame.batches,
-                meshes: &self.meshes,
-                textures: &self.textures,
-                white: &self.white,
-            },
-        );
-    }
-
-    pub(crate) fn record_eye(
-        &self,
-        encoder: &mut wgpu::CommandEncoder,
-        index: usize,
-        target: &wgpu::TextureView,
-    ) {
-        self.record_mirror(encoder, index);
-        let shading = self.frame.lookups.map_or(Shading::Flat, Shading::Smooth);
-        let lit = self.lit.iter().find(|pass| pass.shading == shading);
-        let lit = lit.expect("prepare made the pass of this frame");
-        let targets = self.targets.as_ref().expect("prepare made the targets");
-        lit.record(
-            encoder,
-            &LitDraw {
-                eye_offset: eye_offset(index) as u32,
-                targets,
-                target,
-                background: self.frame.background,
-                instances: &self.instances,
-                batches: &self.frame.batches,
-                meshes: &self.meshes,
-                textures: &self.textures,
-                white: &self.white,
-            },
-        );
     }
 }
 

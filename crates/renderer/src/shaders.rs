@@ -14,6 +14,8 @@ pub(crate) const SHADOW: &str = concat!(
 );
 /// An image at half its size.
 pub(crate) const SHRINK: &str = file!("shrink");
+/// Parts of a picture that no eye sees.
+pub(crate) const HIDDEN: &str = file!("hidden");
 /// Images into rectangles of the window.
 pub(crate) const PRESENT: &str = file!("present");
 
@@ -68,6 +70,16 @@ pub(crate) fn flat() -> String {
     .concat()
 }
 
+/// The depth of an eye with so many samples to a pixel, in an image with one.
+pub(crate) fn depth(samples: u32) -> String {
+    let read = if samples > 1 {
+        file!("depth_many")
+    } else {
+        file!("depth_one")
+    };
+    [file!("depth"), read].concat()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -79,8 +91,11 @@ mod tests {
             ("shadow".to_owned(), SHADOW.to_owned()),
             ("shrink".to_owned(), SHRINK.to_owned()),
             ("present".to_owned(), PRESENT.to_owned()),
+            ("hidden".to_owned(), HIDDEN.to_owned()),
             ("mirror".to_owned(), mirror()),
             ("flat".to_owned(), flat()),
+            ("depth of one sample".to_owned(), depth(1)),
+            ("depth of many samples".to_owned(), depth(4)),
         ];
         for bits in 0..8 {
             let lookups = Lookups {

@@ -54,7 +54,7 @@ const MAPLE: [f32; 3] = [0.62, 0.38, 0.17];
 const PINE: [f32; 3] = [0.46, 0.26, 0.11];
 
 /// A surface of one colour.
-pub(super) fn plain(color: [f32; 3], roughness: f32) -> Material {
+pub(in crate::convert) fn plain(color: [f32; 3], roughness: f32) -> Material {
     Material {
         roughness,
         ..Material::new(color)

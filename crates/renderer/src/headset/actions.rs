@@ -3,6 +3,7 @@
 use openxr as xr;
 
 use super::HeadsetError;
+use super::joints::BareHand;
 use super::note::Note;
 use super::profiles::{Asked, PROFILES, Profile};
 use super::runtime::Runtime;
@@ -51,6 +52,9 @@ pub struct Change {
 pub struct HandReading {
     /// The grip at the time of display; `None` while it is not tracked.
     pub grip: Option<TrackedPose>,
+    /// The hand itself, where it has no controller and its joints are tracked: it then takes the place of grip, trigger and
+    /// squeeze.
+    pub bare: Option<BareHand>,
     /// Trigger, from 0 (open) to 1 (closed).
     pub trigger: f64,
     /// Squeeze, from 0 (open) to 1 (closed).
@@ -61,9 +65,9 @@ pub struct HandReading {
     pub forward: bool,
     /// Upper thumb button, or the lower half of a trackpad.
     pub back: bool,
-    /// Upper thumb button, in the set that can be locked.
+    /// Upper thumb button, in a set of its own beside walking.
     pub red: bool,
-    /// Lower thumb button, in the set that can be locked.
+    /// Lower thumb button, in the same set.
     pub blue: bool,
     /// Menu button.
     pub menu: bool,
@@ -184,27 +188,21 @@ impl Actions {
         }))
     }
 
-    /// Brings the actions up to date, once a frame. With `locked` the Red and Blue buttons rest.
-    pub fn sync(
-        &self,
-        session: &xr::Session<xr::Vulkan>,
-        locked: bool,
-    ) -> Result<(), HeadsetError> {
+    /// Brings the actions up to date, once a frame.
+    pub fn sync(&self, session: &xr::Session<xr::Vulkan>) -> Result<(), HeadsetError> {
         let sets = [
             xr::ActiveActionSet::new(&self.play),
             xr::ActiveActionSet::new(&self.choose),
         ];
-        let active = if locked { &sets[..1] } else { &sets };
-        Ok(session.sync_actions(active)?)
+        Ok(session.sync_actions(&sets)?)
     }
 
-    /// One hand as of the last [`Actions::sync`], its grip at `time`. With `locked` a trackpad chooses no game either.
+    /// One hand as of the last [`Actions::sync`], its grip at `time`.
     pub fn read(
         &self,
         session: &xr::Session<xr::Vulkan>,
         side: Side,
         (base, time): (&xr::Space, xr::Time),
-        locked: bool,
     ) -> Result<HandReading, HeadsetError> {
         let hand = self.hands[side as usize];
         let grip = &self.grips[side as usize];
@@ -230,13 +228,14 @@ impl Actions {
         );
         Ok(HandReading {
             grip: space::locate(grip, base, time)?,
+            bare: None,
             trigger: trigger.current_state.into(),
             squeeze: squeeze.current_state.into(),
             changes: [changed(&trigger), changed(&squeeze)],
             forward: is_down(&self.forward)? || upper,
             back: is_down(&self.back)? || lower,
-            red: !locked && (is_down(&self.red)? || upper),
-            blue: !locked && (is_down(&self.blue)? || lower),
+            red: is_down(&self.red)? || upper,
+            blue: is_down(&self.blue)? || lower,
             menu: is_down(&self.menu)?,
         })
     }

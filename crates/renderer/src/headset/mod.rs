@@ -12,6 +12,9 @@ mod begin;
 mod error;
 mod eyes;
 mod frame;
+mod images;
+mod joints;
+mod mask;
 mod note;
 mod profiles;
 mod runtime;
@@ -22,9 +25,10 @@ mod vulkan;
 pub use self::actions::{Change, HandReading, Readings, Side};
 pub use self::error::HeadsetError;
 pub use self::frame::Frame;
+pub use self::joints::BareHand;
 pub use self::note::{Focus, Note};
 pub use self::runtime::probe;
-pub use self::session::{HeadsetSession, HeadsetSettings};
+pub use self::session::{HeadsetSession, HeadsetSettings, Seen, Shown};
 pub use self::space::TrackedPose;
 
 /// A headset that an OpenXR runtime offers.

@@ -20,6 +20,13 @@ pub enum Focus {
 /// Something that the runtime said, for the journal and the screen.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Note {
+    /// The session began.
+    Began {
+        /// The extensions that it uses, of those that the runtime offers.
+        extensions: Vec<String>,
+        /// How many images each of its swapchains has: of each eye its picture's and, where the runtime takes it, its depth's.
+        images: Vec<usize>,
+    },
     /// The session's focus changed.
     Focus(Focus),
     /// The runtime asks the program to end.

@@ -67,6 +67,9 @@ impl Profile {
     }
 }
 
+/// The profile of a hand without a controller.
+pub(super) const BARE_HAND: &str = "/interaction_profiles/ext/hand_interaction_ext";
+
 /// Every controller that the program knows, those of one maker before those that runtimes map to any hardware.
 #[rustfmt::skip] // tables: pose and vibration, holding and menu, thumb
 pub(super) const PROFILES: [Profile; 14] = {
@@ -162,7 +165,7 @@ pub(super) const PROFILES: [Profile; 14] = {
             extension: Some("XR_KHR_generic_controller"), left: GENERIC, right: GENERIC },
         Profile { path: "/interaction_profiles/khr/simple_controller", name: "simple controller",
             extension: None, left: SIMPLE, right: SIMPLE },
-        Profile { path: "/interaction_profiles/ext/hand_interaction_ext", name: "bare hand",
+        Profile { path: BARE_HAND, name: "bare hand",
             extension: Some("XR_EXT_hand_interaction"), left: HAND, right: HAND },
     ]
 };

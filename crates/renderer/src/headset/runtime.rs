@@ -82,6 +82,16 @@ impl Runtime {
         self.enabled.other.contains(&ended(extension))
     }
 
+    /// The names of what was enabled.
+    pub fn extensions(&self) -> Vec<String> {
+        let names = self.enabled.names();
+        let text = |name: &[u8]| {
+            let name = name.strip_suffix(b"\0").unwrap_or(name);
+            String::from_utf8_lossy(name).into_owned()
+        };
+        names.iter().map(|name| text(name)).collect()
+    }
+
     /// The runtime's clock; `None` where it cannot be read.
     pub fn now(&self) -> Option<xr::Time> {
         #[cfg(unix)]
@@ -111,6 +121,9 @@ fn usable(offered: &xr::ExtensionSet) -> xr::ExtensionSet {
         wanted.khr_win32_convert_performance_counter_time =
             offered.khr_win32_convert_performance_counter_time;
     }
+    wanted.khr_composition_layer_depth = offered.khr_composition_layer_depth;
+    wanted.khr_visibility_mask = offered.khr_visibility_mask;
+    wanted.ext_hand_tracking = offered.ext_hand_tracking;
     wanted.ext_local_floor = offered.ext_local_floor;
     wanted.ext_user_presence = offered.ext_user_presence;
     wanted.fb_display_refresh_rate = offered.fb_display_refresh_rate;

@@ -1,21 +1,25 @@
-//! The session: its states, its frames, and what it shows.
+//! The session: its beginning, its frames, and what the hands do in them.
+
+mod events;
+mod picture;
 
 use std::time::Instant;
 
-use glam::{Quat, Vec3};
-use image::RgbaImage;
 use openxr as xr;
 
-use super::actions::{Actions, Readings, Side};
+use super::actions::{Actions, HandReading, Readings, Side};
 use super::begin::{choose_rate, create, floor};
 use super::eyes::Eye;
 use super::frame::Frame;
+use super::images::Images;
+use super::joints::Joints;
 use super::note::{Focus, Note};
 use super::runtime::{Runtime, STEREO};
 use super::vulkan::{self, Vulkan};
 use super::{Headset, HeadsetError, space};
-use crate::offscreen::Readback;
-use crate::{Fov, Gpu, Renderer, Scene, View};
+use crate::Gpu;
+
+pub use picture::{Seen, Shown};
 
 /// What may be chosen of a session.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -29,6 +33,10 @@ pub struct HeadsetSettings {
 pub struct HeadsetSession {
     eyes: [Eye; 2],
     actions: Actions,
+    /// `None` where the runtime tracks no hands.
+    joints: Option<Joints>,
+    /// Hands that the runtime's chosen profile says to be bare, left first.
+    is_bare: [bool; 2],
     /// Which of the runtime's spaces `base` is.
     floor: xr::ReferenceSpaceType,
     base: xr::Space,
@@ -40,7 +48,6 @@ pub struct HeadsetSession {
     blend: xr::EnvironmentBlendMode,
     focus: Focus,
     is_running: bool,
-    is_locked: bool,
     notes: Vec<Note>,
     runtime: Runtime,
 }
@@ -57,6 +64,7 @@ impl HeadsetSession {
         let (session, waiter, stream) = create(&runtime, &binding)?;
         let mut notes = Vec::new();
         let actions = Actions::attach(&runtime, &session, &mut notes)?;
+        let joints = Joints::new(&runtime, &session)?;
         let floor = floor(&runtime, &session)?;
         let base = session.create_reference_space(floor, xr::Posef::IDENTITY)?;
         let head =
@@ -68,8 +76,16 @@ impl HeadsetSession {
             runtime: runtime.headset.runtime.clone(),
             what: "a way to blend pictures with the surroundings",
         })?;
-        let eye = || Eye::new(&runtime, &session, &gpu, runtime.headset.eye_size);
-        let eyes = [eye()?, eye()?];
+        let eye = |index| Eye::new(&runtime, &session, &gpu, index);
+        let eyes = [eye(0)?, eye(1)?];
+        notes.push(Note::Began {
+            extensions: runtime.extensions(),
+            images: eyes
+                .iter()
+                .flat_map(Eye::images)
+                .map(Images::count)
+                .collect(),
+        });
         if runtime.enabled.fb_display_refresh_rate {
             notes.push(Note::RefreshRate(choose_rate(
                 &session,
@@ -79,6 +95,8 @@ impl HeadsetSession {
         Ok(Self {
             eyes,
             actions,
+            joints,
+            is_bare: [false; 2],
             floor,
             base,
             head,
@@ -89,7 +107,6 @@ impl HeadsetSession {
             blend,
             focus: Focus::Stopped,
             is_running: false,
-            is_locked: false,
             notes,
             runtime,
         })
@@ -115,73 +132,12 @@ impl HeadsetSession {
         self.focus
     }
 
-    /// Lets the Red and Blue buttons of the controllers rest, or wakes them.
-    pub fn lock_choice(&mut self, locked: bool) {
-        self.is_locked = locked;
-    }
-
     /// Asks the runtime to end the session; [`Note::Exit`] follows.
     ///
     /// # Errors
     /// When the session is lost or not running.
     pub fn request_exit(&self) -> Result<(), HeadsetError> {
         Ok(self.session.request_exit()?)
-    }
-
-    /// Hears what the runtime has to say, and follows the session's states.
-    ///
-    /// # Errors
-    /// [`HeadsetError::Lost`] when the session cannot go on.
-    pub fn poll(&mut self) -> Result<Vec<Note>, HeadsetError> {
-        let mut buffer = xr::EventDataBuffer::new();
-        while let Some(event) = self.runtime.instance.poll_event(&mut buffer)? {
-            use xr::Event;
-            match event {
-                Event::SessionStateChanged(change) => {
-                    let state = change.state();
-                    if state == xr::SessionState::READY {
-                        self.session.begin(STEREO)?;
-                        self.is_running = true;
-                    } else if state == xr::SessionState::STOPPING {
-                        self.session.end()?;
-                        self.is_running = false;
-                    } else if state == xr::SessionState::LOSS_PENDING {
-                        return Err(HeadsetError::Lost("LOSS_PENDING".to_owned()));
-                    } else if state == xr::SessionState::EXITING {
-                        self.notes.push(Note::Exit);
-                    }
-                    let focus = Focus::from(state);
-                    if focus != self.focus {
-                        self.focus = focus;
-                        self.notes.push(Note::Focus(focus));
-                    }
-                }
-                Event::InstanceLossPending(_) => {
-                    return Err(HeadsetError::Lost("INSTANCE_LOSS_PENDING".to_owned()));
-                }
-                Event::InteractionProfileChanged(_) => {
-                    for side in Side::BOTH {
-                        let profile = self.actions.profile(&self.session, side)?;
-                        self.notes.push(Note::Profile { side, profile });
-                    }
-                }
-                Event::ReferenceSpaceChangePending(change)
-                    if change.reference_space_type() == self.floor =>
-                {
-                    let at = change.change_time().as_nanos();
-                    self.notes.push(Note::Recentred(at));
-                }
-                Event::UserPresenceChangedEXT(change) => {
-                    self.notes.push(Note::Worn(change.is_user_present()));
-                }
-                Event::DisplayRefreshRateChangedFB(change) => {
-                    let rate = change.to_display_refresh_rate();
-                    self.notes.push(Note::RefreshRate(rate));
-                }
-                _ => {}
-            }
-        }
-        Ok(std::mem::take(&mut self.notes))
     }
 
     /// Waits until the runtime wants the next frame begun. The session must be running.
@@ -213,14 +169,22 @@ impl HeadsetSession {
             ..Readings::default()
         };
         if self.focus == Focus::Focused {
-            self.actions.sync(&self.session, self.is_locked)?;
+            self.actions.sync(&self.session)?;
             for side in Side::BOTH {
-                let at = (&self.base, frame.time);
-                readings.hands[side as usize] =
-                    self.actions.read(&self.session, side, at, self.is_locked)?;
+                readings.hands[side as usize] = self.read_hand(side, frame.time)?;
             }
         }
         Ok(readings)
+    }
+
+    fn read_hand(&self, side: Side, time: xr::Time) -> Result<HandReading, HeadsetError> {
+        let at = (&self.base, time);
+        let mut hand = self.actions.read(&self.session, side, at)?;
+        let has_controller = hand.grip.is_some() && !self.is_bare[side as usize];
+        if let Some(joints) = self.joints.as_ref().filter(|_| !has_controller) {
+            hand.bare = joints.read(side, &self.base, time)?;
+        }
+        Ok(hand)
     }
 
     /// Lets a hand feel a pulse of an amplitude from 0 to 1.
@@ -240,113 +204,11 @@ impl HeadsetSession {
         self.stream.begin()?;
         Ok(self.stream.end(frame.time, self.blend, &[])?)
     }
-
-    /// Locates the eyes and draws the scene for them; `world_from_tracking` is where the participant's space lies in it.
-    ///
-    /// Returns the eyes' views, world frame. With `wanted` their images are brought back too, which costs a wait for the device.
-    ///
-    /// # Errors
-    /// When the session is lost or the scene cannot be drawn.
-    pub fn show(
-        &mut self,
-        frame: Frame,
-        renderer: &mut Renderer,
-        scene: &Scene,
-        world_from_tracking: (Vec3, Quat),
-        wanted: bool,
-    ) -> Result<(Vec<View>, Option<Vec<RgbaImage>>), HeadsetError> {
-        self.stream.begin()?;
-        let (flags, located) = self.session.locate_views(STEREO, frame.time, &self.base)?;
-        let known = xr::ViewStateFlags::POSITION_VALID | xr::ViewStateFlags::ORIENTATION_VALID;
-        let [left, right] = located.as_slice() else {
-            return Err(HeadsetError::Other("a view for one eye only".to_owned()));
-        };
-        if !flags.contains(known) {
-            self.stream.end(frame.time, self.blend, &[])?;
-            return Ok((Vec::new(), None));
-        }
-        let located = [left, right];
-        let views = located.map(|eye| view(eye, world_from_tracking));
-        let images = self.draw(renderer, scene, views, wanted)?;
-        let projections: Vec<_> = located
-            .iter()
-            .zip(&self.eyes)
-            .map(|(view, eye)| {
-                xr::CompositionLayerProjectionView::new()
-                    .pose(view.pose)
-                    .fov(view.fov)
-                    .sub_image(eye.sub_image())
-            })
-            .collect();
-        let layer = xr::CompositionLayerProjection::new()
-            .space(&self.base)
-            .views(&projections);
-        self.stream.end(frame.time, self.blend, &[&layer])?;
-        Ok((views.to_vec(), images))
-    }
-
-    fn draw(
-        &mut self,
-        renderer: &mut Renderer,
-        scene: &Scene,
-        views: [View; 2],
-        wanted: bool,
-    ) -> Result<Option<Vec<RgbaImage>>, HeadsetError> {
-        let device = &self.gpu.device;
-        for eye in &mut self.eyes {
-            eye.acquire()?;
-        }
-        let size = self.eyes[0].size();
-        let textures: Vec<_> = self.eyes.iter().filter_map(Eye::current).collect();
-        let targets: Vec<_> = textures
-            .iter()
-            .map(|texture| texture.create_view(&Default::default()))
-            .collect();
-        let eyes: Vec<_> = views.into_iter().zip(&targets).collect();
-        let mut encoder = device.create_command_encoder(&Default::default());
-        renderer.record(&mut encoder, scene, &eyes, size)?;
-        let readback = wanted.then(|| {
-            let readback = Readback::new(device, size[0], size[1], textures.len());
-            for (index, texture) in textures.iter().enumerate() {
-                readback.copy(&mut encoder, texture, index);
-            }
-            // The compositor expects its images as colour targets.
-            let back = textures.iter().map(|texture| wgpu::TextureTransition {
-                texture: *texture,
-                selector: None,
-                state: wgpu::TextureUses::COLOR_TARGET,
-            });
-            encoder.transition_resources(std::iter::empty(), back);
-            readback
-        });
-        self.gpu.queue.submit([encoder.finish()]);
-        let images = readback
-            .map(|readback| readback.images(device))
-            .transpose()?;
-        for eye in &mut self.eyes {
-            eye.release()?;
-        }
-        Ok(images)
-    }
 }
 
 impl Drop for HeadsetSession {
     fn drop(&mut self) {
         // Images go back to the runtime, which must find no work on them; a lost device has none.
         let _ = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
-    }
-}
-
-/// An eye in the world.
-fn view(eye: &xr::View, (position, rotation): (Vec3, Quat)) -> View {
-    View {
-        position: position + rotation * space::vector(eye.pose.position).as_vec3(),
-        rotation: (rotation * space::rotation(eye.pose.orientation).as_quat()).normalize(),
-        fov: Fov {
-            left: eye.fov.angle_left,
-            right: eye.fov.angle_right,
-            up: eye.fov.angle_up,
-            down: eye.fov.angle_down,
-        },
     }
 }

@@ -48,28 +48,32 @@ pub(super) fn locate(
     if answer.into_raw() < 0 {
         return Err(answer.into());
     }
-    Ok(tracked(&location, &velocity))
+    Ok(tracked(
+        (location.location_flags, location.pose),
+        (
+            velocity.velocity_flags,
+            velocity.linear_velocity,
+            velocity.angular_velocity,
+        ),
+    ))
 }
 
 /// What the flags say is known; tracked or inferred alike, as a controller behind the back is inferred.
-fn tracked(
-    location: &xr::sys::SpaceLocation,
-    velocity: &xr::sys::SpaceVelocity,
+pub(super) fn tracked(
+    (known, pose): (xr::SpaceLocationFlags, xr::Posef),
+    (moves, linear, angular): (xr::SpaceVelocityFlags, xr::Vector3f, xr::Vector3f),
 ) -> Option<TrackedPose> {
     let place = xr::SpaceLocationFlags::POSITION_VALID | xr::SpaceLocationFlags::ORIENTATION_VALID;
-    if !location.location_flags.contains(place) {
+    if !known.contains(place) {
         return None;
     }
     let motion = xr::SpaceVelocityFlags::LINEAR_VALID | xr::SpaceVelocityFlags::ANGULAR_VALID;
     Some(TrackedPose {
-        position: vector(location.pose.position),
-        rotation: rotation(location.pose.orientation),
-        velocity: velocity.velocity_flags.contains(motion).then(|| {
-            [
-                vector(velocity.linear_velocity),
-                vector(velocity.angular_velocity),
-            ]
-        }),
+        position: vector(pose.position),
+        rotation: rotation(pose.orientation),
+        velocity: moves
+            .contains(motion)
+            .then(|| [vector(linear), vector(angular)]),
     })
 }
 

@@ -3,6 +3,7 @@
 //! Debian 12's lavapipe resolves every multisampled layer into the first, and loses geometry with multiview
 //! (Mesa 22.3.6); a pass of its own per eye is right on every driver.
 
+use super::hidden::{HiddenMesh, HiddenPass};
 use super::{Batch, DEPTH_FORMAT, Finish, GpuMesh};
 use crate::scene::Pattern;
 use crate::shaders::{self, Lookups};
@@ -27,20 +28,25 @@ pub(crate) struct Targets {
     pub size: [u32; 2],
     /// `None` without multisampling: the target itself is drawn to.
     color: Option<wgpu::TextureView>,
-    depth: wgpu::TextureView,
+    pub depth: wgpu::TextureView,
 }
 
 impl Targets {
-    pub fn new(device: &wgpu::Device, size: [u32; 2], samples: u32) -> Self {
-        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
-        let attachment = |format| {
+    /// With `reads_depth` a later pass may read the depth.
+    pub fn new(device: &wgpu::Device, size: [u32; 2], samples: u32, reads_depth: bool) -> Self {
+        let attachment = |format, more| {
+            let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | more;
             texture::single(device, "eye", size, samples, format, usage)
                 .create_view(&Default::default())
         };
+        let read = match reads_depth {
+            true => wgpu::TextureUsages::TEXTURE_BINDING,
+            false => wgpu::TextureUsages::empty(),
+        };
         Self {
             size,
-            color: (samples > 1).then(|| attachment(COLOR_FORMAT)),
-            depth: attachment(DEPTH_FORMAT),
+            color: (samples > 1).then(|| attachment(COLOR_FORMAT, wgpu::TextureUsages::empty())),
+            depth: attachment(DEPTH_FORMAT, read),
         }
     }
 }
@@ -225,10 +231,13 @@ impl LitPass {
             })],
             depth_stencil_attachment: Some(super::depth_attachment(
                 &draw.targets.depth,
-                wgpu::StoreOp::Discard,
+                draw.depth_store,
             )),
             ..Default::default()
         });
+        if let Some((hidden, mesh)) = draw.hidden {
+            hidden.draw(&mut pass, mesh);
+        }
         pass.set_bind_group(0, &self.bind_group, &[draw.eye_offset]);
         pass.set_vertex_buffer(1, draw.instances.slice(..));
         let mut current = None;
@@ -256,6 +265,10 @@ pub(crate) struct LitDraw<'a> {
     pub eye_offset: u32,
     pub targets: &'a Targets,
     pub target: &'a wgpu::TextureView,
+    /// Whether a later pass reads the depth.
+    pub depth_store: wgpu::StoreOp,
+    /// What is not seen of the picture.
+    pub hidden: Option<(&'a HiddenPass, &'a HiddenMesh)>,
     pub background: [f32; 3],
     pub instances: &'a wgpu::Buffer,
     pub batches: &'a [Batch],

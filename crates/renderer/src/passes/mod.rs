@@ -1,5 +1,7 @@
 //! The passes of a frame, one file each, with the same stem as the shader.
 
+pub(crate) mod depth;
+pub(crate) mod hidden;
 pub(crate) mod lit;
 pub(crate) mod mirror;
 pub(crate) mod present;

@@ -4,6 +4,7 @@ use glam::{Mat4, Vec3};
 use image::{Rgba, RgbaImage};
 
 use super::*;
+use crate::passes::hidden::HiddenMesh;
 use crate::scene::{Instance, Light, LightSource, Material, MeshId, Occluder, TextureId};
 use crate::{BackendChoice, Fov, MeshData};
 
@@ -117,6 +118,49 @@ fn what_is_off_or_not_called_for_has_no_pass() {
     assert_eq!(passes(no_occlusion, true), ["shadow", "mirror", "lit"]);
     let flat = RendererSettings { flat: true, ..all };
     assert_eq!(passes(flat, true), ["flat"]);
+}
+
+/// A headset's depth and hidden corners have passes of their own, from the frame on that wants them.
+#[test]
+fn depth_and_hidden_corners_are_drawn_where_they_are_wanted() {
+    for samples in [1, 4] {
+        let settings = RendererSettings {
+            samples,
+            ..RendererSettings::default()
+        };
+        let mut renderer = renderer(settings);
+        let mesh = renderer.add_mesh(&MeshData::quad(1.0, 1.0)).expect("good");
+        let scene = called_for(vec![instance(mesh); 2], None);
+        let device = renderer.gpu.device.clone();
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
+        let image = |format| {
+            let texture = texture::single(&device, "eye", [8, 8], 1, format, usage);
+            texture.create_view(&Default::default())
+        };
+        let color = image(crate::passes::lit::COLOR_FORMAT);
+        let hidden = HiddenMesh::new(&device, &[[-1.0, 1.0], [0.0, 1.0], [-1.0, 0.0]]);
+        let formats = [
+            wgpu::TextureFormat::Depth32Float,
+            wgpu::TextureFormat::Depth16Unorm,
+        ];
+        for format in formats {
+            let depth = image(format);
+            let eye = EyeTarget {
+                color: &color,
+                depth: Some(&depth),
+                hidden: Some(&hidden),
+            };
+            let mut encoder = device.create_command_encoder(&Default::default());
+            let recorded = renderer.record_eyes(&mut encoder, &scene, &[(view(), eye)], [8, 8]);
+            recorded.expect("drawn");
+            renderer.gpu.queue.submit([encoder.finish()]);
+        }
+        let passes = renderer.passes();
+        assert!(
+            passes.contains(&"depth") && passes.contains(&"hidden"),
+            "{passes:?}"
+        );
+    }
 }
 
 #[test]

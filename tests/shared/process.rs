@@ -1,8 +1,6 @@
 use std::process::{Child, Command, ExitStatus};
 use std::time::Duration;
 
-use rustix::process::{Pid, Signal, kill_process};
-
 use super::ask_until;
 
 /// A process that is killed when its owner goes, however the test ends.
@@ -41,25 +39,6 @@ impl Process {
     /// How it ended; none when it still runs after `limit`.
     pub fn ended_within(&mut self, limit: Duration) -> Option<ExitStatus> {
         ask_until(limit, || self.ended())
-    }
-
-    /// Sends `signal`, unless it has ended: its number may be another process's by then.
-    pub fn signal(&mut self, signal: Signal) {
-        if self.ended().is_some() {
-            return;
-        }
-        kill_process(Pid::from_child(&self.child), signal)
-            .unwrap_or_else(|error| panic!("{} takes no signal: {error}", self.name));
-    }
-
-    /// Whether every thread of it is stopped.
-    pub fn is_stopped(&self) -> bool {
-        let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.child.id()));
-        // proc_pid_stat(5): "number (name) state ..."; the name may hold brackets and spaces itself.
-        stat.is_ok_and(|line| {
-            line.rsplit_once(") ")
-                .is_some_and(|(_, rest)| rest.starts_with('T'))
-        })
     }
 
     /// Kills it and waits until it is gone, with all that it held open.
