@@ -1,9 +1,9 @@
 //! From the game's contacts to what is heard: on the card while somebody plays, and in the videos afterwards.
 //!
-//! The sound listens to [`Game::contacts`] and [`Game::rolling`] alone, which come from the physics. Where a scene shows no
-//! `sound` nothing of this is built: no mixer, no thread, no list of events.
+//! The sound listens to [`Game::contacts`] and [`Game::rolling`], which come from the physics, and to refused presses. Where a scene
+//! shows no `sound` nothing of this is built: no mixer, no thread, no list of events.
 
-use game::{Config, Game, Model, Phase};
+use game::{Config, EventKind, Game, Model, Phase};
 use glam::DVec3;
 use serde_json::json;
 use sound::live::Live;
@@ -111,6 +111,14 @@ impl Reporter {
                 speed: ball.speed,
                 surface: material(ball.surface),
             }))
+        }));
+        let refused = game.events().iter().filter_map(|event| match event.kind {
+            EventKind::Refused { button } => Some(button),
+            _ => None,
+        });
+        sounded.extend(refused.map(|button| {
+            let point = game.observe().buttons[button as usize].top;
+            now(Sounding::Refusal { point })
         }));
         let is_running = game.phase() == Phase::Setting;
         if is_running != self.was_running {
@@ -315,6 +323,40 @@ mod tests {
         let room = settings(&with).and_then(|settings| settings.room);
         assert_eq!(room.map(|room| room.size_m.x), Some(12.0));
         assert!(Reporter::of(&with).is_some());
+    }
+
+    #[test]
+    fn a_refused_press_sounds_at_its_button_and_one_that_is_taken_does_not() {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("config");
+        let conditions = game::Conditions::load(&folder, "alley", &[]).expect("shipped");
+        let mut reporter = Reporter::of(&conditions.lobby).expect("it lists sound");
+        let mut game = Game::new(conditions, 1).expect("an alley");
+        let mut press = |red, blue| {
+            let input = game::Input {
+                press_red: red,
+                press_blue: blue,
+                locked: [true, false],
+                steps: 8,
+                ..game::Input::default()
+            };
+            game.step(&input);
+            let sounded = reporter.report(&game);
+            let refusals: Vec<DVec3> = sounded
+                .iter()
+                .filter_map(|event| match event.sounding {
+                    Sounding::Refusal { point } => Some(point),
+                    _ => None,
+                })
+                .collect();
+            let buttons = game.observe().buttons.map(|button| button.top);
+            (refusals, buttons)
+        };
+        assert_eq!(press(false, false).0, []);
+        let (refused, [red, blue]) = press(true, false);
+        assert_eq!(refused, [red]);
+        assert_ne!(red, blue);
+        assert_eq!(press(true, false).0, [], "it is held, not pressed again");
+        assert_eq!(press(false, true).0, [], "this one is not locked");
     }
 
     #[test]

@@ -28,6 +28,8 @@ fn felt(kind: &EventKind, held: Option<Model>) -> Option<Pulse> {
         EventKind::Touched { .. } => pulse(0.2, 0.015),
         EventKind::Grabbed { .. } => pulse(0.6, 0.04),
         EventKind::Released(_) => pulse(0.4, 0.025),
+        // Light and long: unlike a grip or a blow.
+        EventKind::Refused { .. } => pulse(0.25, 0.08),
         EventKind::Impact { a, b, impulse, .. } => {
             let is_mine = |model: &Model| *model == Model::Hand || Some(*model) == held;
             let share = (impulse / STRONGEST_IMPULSE).min(1.0);
@@ -43,6 +45,7 @@ fn felt(kind: &EventKind, held: Option<Model>) -> Option<Pulse> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use game::Button;
     use glam::DVec3;
 
     fn impact(a: Model, impulse: f64) -> Event {
@@ -56,6 +59,21 @@ mod tests {
                 impulse,
             },
         }
+    }
+
+    #[test]
+    fn a_refused_press_is_felt_lightly_and_one_that_is_taken_is_not() {
+        let event = |kind| [Event { step: 1, kind }];
+        let button = Button::Red;
+        let refused = of(&event(EventKind::Refused { button }), None).expect("it is felt");
+        let grabbed = of(
+            &event(EventKind::Grabbed {
+                model: Model::Ball(0),
+            }),
+            None,
+        );
+        assert!(refused.amplitude < grabbed.expect("it is felt").amplitude);
+        assert_eq!(of(&event(EventKind::Pressed { button }), None), None);
     }
 
     #[test]

@@ -65,6 +65,11 @@ pub enum Sounding {
         /// Where it stands, world frame [m].
         point: DVec3,
     },
+    /// A button was pressed that is not due: a soft, dull note, unlike any blow of the alley.
+    Refusal {
+        /// Where the button is, world frame [m].
+        point: DVec3,
+    },
     /// The head moved.
     Listener(Listener),
 }

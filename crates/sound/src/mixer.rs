@@ -201,6 +201,13 @@ impl Mixer {
                 }
             }
             Sounding::Machine { is_running, point } => self.machine.switch(is_running, point),
+            Sounding::Refusal { point } if point.is_finite() => {
+                let rate = self.sample_rate;
+                self.speak(point, due.at, |voice, delay, _| {
+                    voice.refuse(point, delay, rate);
+                });
+            }
+            Sounding::Refusal { .. } => self.lost += 1,
             Sounding::Listener(listener) => {
                 if listener.position.is_finite() && listener.orientation.is_finite() {
                     self.is_turned |= listener != self.listener;
@@ -224,7 +231,15 @@ impl Mixer {
             impulse: impact.impulse.min(HEAVIEST),
             ..*impact
         };
-        let (distance, _) = hear(&self.listener, impact.point);
+        let rate = self.sample_rate;
+        self.speak(impact.point, at, |voice, delay, noise| {
+            voice.strike(&impact, delay, noise, rate);
+        });
+    }
+
+    /// Lets something begin at `point`, with the voice that is missed least.
+    fn speak(&mut self, point: DVec3, at: f64, begin: impl FnOnce(&mut Voice, f64, &mut Noise)) {
+        let (distance, _) = hear(&self.listener, point);
         let way = if self.is_delayed { distance } else { 0.0 };
         let delay = way / SPEED_OF_SOUND * self.sample_rate + (at - self.clock as f64).max(0.0);
         // The quietest is the first of those that are silent, where there is one.
@@ -233,10 +248,8 @@ impl Mixer {
             .iter_mut()
             .min_by(|a, b| loudness(a).total_cmp(&loudness(b)));
         if let Some(voice) = quietest {
-            voice.strike(&impact, delay, &mut self.noise, self.sample_rate);
-            voice
-                .placement
-                .aim(&self.listener, impact.point, &self.shadow);
+            begin(voice, delay, &mut self.noise);
+            voice.placement.aim(&self.listener, point, &self.shadow);
         }
     }
 

@@ -1,4 +1,5 @@
-//! One impact while it is heard: the blow's force drives the modes of both bodies and pushes the air aside.
+//! One impact while it is heard: the blow's force drives the modes of both bodies and pushes the air aside. A refusal is a
+//! voice as well: two notes that nothing in the alley has.
 
 use std::f64::consts::{SQRT_2, TAU};
 
@@ -17,6 +18,13 @@ const AIR: f64 = 1.204;
 /// (as a share) and its gain may differ from the table. [D]
 const DETUNED: f32 = 0.01;
 const REGAINED: f32 = 0.25;
+
+/// A refusal's notes: frequency [Hz] and gain [Pa m / (N s)]. A tritone apart and low, they say no without frightening: 0.1 Pa at
+/// 1 m. [D]
+const REFUSAL: [(f64, f64); 2] = [(233.1, 0.12), (329.6, 0.08)];
+/// How fast they die away, and how long the push takes that begins them [s]: it makes their beginning soft. [D]
+const REFUSAL_LOSS: f64 = 0.04;
+const REFUSAL_PUSH_S: f64 = 0.003;
 
 /// The click of two bodies that are suddenly moved, which small bodies' impacts consist of for the most part.
 ///
@@ -101,6 +109,18 @@ impl Voice {
                 self.bank
                     .add(frequency, material.loss_factor(), gain, sample_rate);
             }
+        }
+    }
+
+    /// Begins with a refusal at `point`, `delay` [samples] after the first sample of the next quantum.
+    pub fn refuse(&mut self, point: DVec3, delay: f64, sample_rate: f64) {
+        *self = Voice::SILENT;
+        self.pulse = Pulse::new(delay, REFUSAL_PUSH_S * sample_rate);
+        self.impulse = 1.0;
+        self.point = point;
+        self.is_sounding = true;
+        for (frequency, gain) in REFUSAL {
+            self.bank.add(frequency, REFUSAL_LOSS, gain, sample_rate);
         }
     }
 

@@ -5,6 +5,7 @@ mod card;
 mod level;
 mod pitch;
 mod place;
+mod refusal;
 mod repeat;
 mod rolling;
 #[path = "../../examples/throw/strike.rs"]
