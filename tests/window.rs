@@ -3,6 +3,9 @@
 //! The driver sees what a person sees: it follows the journal, re-simulates it, and so knows where hand, ball and foul
 //! line are; it acts through the X server alone.
 
+/// The experimenter's window beside the participant's.
+mod experimenter;
+
 use std::f64::consts::FRAC_PI_2;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};

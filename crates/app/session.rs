@@ -4,7 +4,9 @@
 //! also when somebody interrupts it: the folder is in order then, up to that frame.
 
 pub mod course;
+mod health;
 mod recording;
+mod setup;
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -16,79 +18,14 @@ use game::{Button, Conditions, DisplayProfileName, Event, EventKind, Game, Input
 use physics::{Stopwatch, Unwatched};
 
 use crate::boundary::{Boundary, Refused};
-use crate::journal::{self, Continues, End, Header, Journal, Story};
+use crate::journal::{self, End, Header, Journal};
 use crate::panel::Pointing;
 use crate::pictures::{Painter, Wanted};
 use course::Course;
+pub use health::Health;
 pub use recording::sheet_text;
 use recording::{Album, Recording};
-
-/// How a session is set up.
-#[derive(Debug)]
-pub struct Setup {
-    /// Resolved settings.
-    pub conditions: Conditions,
-    /// Scene that they came from.
-    pub scene: String,
-    /// Bowling frames per game.
-    pub frames: u32,
-    /// Seed of the scripted participant.
-    pub seed: u64,
-    /// Who bowls: `headset`, `desk` or `script`.
-    pub device: &'static str,
-    /// Frames per second of the device [Hz].
-    pub rate_hz: f64,
-    /// Where it is kept, and as what.
-    pub keep: Keep,
-}
-
-/// Where a session is kept, and as what.
-#[derive(Debug)]
-pub enum Keep {
-    /// As a recording in a folder of its own, with motion table, score sheets and pictures.
-    Recording(PathBuf),
-    /// As a part of a study: a journal alone, from which the study's tables are made.
-    Study(Box<Seat>),
-}
-
-impl Keep {
-    /// The games that a scripted participant has still to begin, in their order, and its throws before them.
-    pub fn script(&self) -> (Vec<Button>, u32) {
-        let Self::Study(seat) = self else {
-            return (Button::BOTH.to_vec(), 0);
-        };
-        let first = seat.plan.first;
-        let games = [first, first.other()].map(course::button);
-        let events = seat.before.iter().flat_map(|(_, story)| &story.events);
-        let (mut begun, mut training) = (0, seat.plan.rules.training_throws);
-        for (_, event) in events {
-            match event["event"].as_str() {
-                Some("game_started") => begun += 1,
-                Some("settled") if begun == 0 => training = training.saturating_sub(1),
-                _ => {}
-            }
-        }
-        match begun {
-            0 => (games.to_vec(), training),
-            _ => (games[games.len().min(begun)..].to_vec(), 0),
-        }
-    }
-}
-
-/// A session's place in a study.
-#[derive(Debug)]
-pub struct Seat {
-    /// The journal, which must not exist.
-    pub journal: PathBuf,
-    /// The salted digest of the settings.
-    pub settings_digest: String,
-    /// What the plan says of the session.
-    pub plan: course::Plan,
-    /// What is noted before anything else.
-    pub notes: Vec<Note>,
-    /// The journals so far of a session that was broken off, up to where it is taken up.
-    pub before: Option<(Continues, Story)>,
-}
+pub use setup::{Keep, Seat, Setup};
 
 /// A session under way.
 pub struct Session {
@@ -103,6 +40,7 @@ pub struct Session {
     started: Vec<Button>,
     games_over: u32,
     trigger: f64,
+    health: Health,
 }
 
 /// What a session left.
@@ -171,6 +109,7 @@ impl Session {
             started: Vec::new(),
             games_over: 0,
             trigger: 0.0,
+            health: Health::default(),
         }
     }
 
@@ -229,6 +168,8 @@ impl Session {
             input.locked = course.protocol().locked();
         }
         self.trigger = input.trigger;
+        let step_hz = self.game.config().physics.step_hz;
+        self.health.follow(&input, f64::from(input.steps) / step_hz);
         self.journal.input(&input)?;
         self.game.step_watched(&input, watch);
         count(self.game.events(), &mut self.started, &mut self.games_over);
@@ -337,7 +278,18 @@ impl Session {
     /// # Errors
     /// As [`Session::frame`].
     pub fn device(&mut self, value: serde_json::Value) -> Result<()> {
+        self.health.hear(&value, Instant::now());
         self.journal.device(value)
+    }
+
+    /// A picture was shown, `missed` pictures after it was due; a headset says so by its own lines.
+    pub fn picture(&mut self, missed: u64) {
+        self.health.picture(Instant::now(), missed);
+    }
+
+    /// How tracking and pictures fare.
+    pub fn health(&self) -> &Health {
+        &self.health
     }
 
     /// The game, as the last frame left it.

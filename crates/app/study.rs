@@ -1,11 +1,13 @@
 //! `bowling study`: an experiment from its plan to its tables.
 //!
 //! `seat` turns a slot of the plan into the settings of a session, `run` plays it, `attendant` answers or asks what is
-//! due, `tables` makes every table from the journals.
+//! due, `experimenter` is what terminal and window say and understand, `tables` makes every table from the journals.
 
 mod approaches;
 pub mod attendant;
+pub(crate) mod board;
 mod console;
+pub mod experimenter;
 pub(crate) mod folder;
 mod manage;
 mod record;

@@ -3,6 +3,7 @@
 //! The simulation follows the wall clock in the device's own frames, however fast the window is drawn; the journal sees no
 //! difference to a session without a window.
 
+mod aside;
 mod cost;
 mod keys;
 mod overlay;
@@ -34,12 +35,15 @@ use crate::play::{self, Progress};
 use crate::session::{Session, Setup};
 use crate::sound::Ears;
 use crate::study::attendant::Attendant;
+use aside::Aside;
 use cost::Meter;
 use keys::{Command, Keys};
 use overlay::Overlay;
 
 /// Vertical field of view of the window [rad]: wide enough to see hand and pins at once.
 const WINDOW_FOV: f32 = 1.05;
+/// Size of the window at first [points].
+const SIZE: (f64, f64) = (960.0, 600.0);
 /// Pictures a second of a display that does not tell.
 const USUAL_HZ: f64 = 60.0;
 /// Where the eyes are while the head is not tracked: behind the approach, at a standing person's height [m].
@@ -143,6 +147,8 @@ struct Stage {
     meter: Meter,
     keys: Keys,
     session: Session,
+    /// The experimenter's, in a study.
+    aside: Option<Aside>,
     ears: Ears,
     again: Option<Again>,
     /// Up to when the alley has been simulated.
@@ -169,7 +175,7 @@ impl Shell {
         };
         let attributes = Window::default_attributes()
             .with_title("Bowling")
-            .with_inner_size(LogicalSize::new(960, 600));
+            .with_inner_size(LogicalSize::new(SIZE.0, SIZE.1));
         let window = events
             .create_window(attributes)
             .context("cannot open a window; use --offscreen")?;
@@ -193,6 +199,14 @@ impl Shell {
             "Recording into {}. F1 shows the keys, Esc ends and saves.",
             session.folder().display()
         );
+        let aside = session
+            .course()
+            .map(|_| Aside::open(events, SIZE.0))
+            .transpose();
+        let aside = aside.unwrap_or_else(|error| {
+            println!("No experimenter's window: {error:#}. The terminal has it all.");
+            None
+        });
         let simulated = Instant::now();
         self.stage = Some(Stage {
             target,
@@ -204,6 +218,7 @@ impl Shell {
             meter: Meter::new(),
             keys: Keys::default(),
             session,
+            aside,
             ears,
             again,
             simulated,
@@ -239,6 +254,9 @@ impl Shell {
             attendant.attend(&mut stage.session)?;
             stage.panel.attend(&mut stage.session)?;
         }
+        if let Some(aside) = &mut stage.aside {
+            aside.attend(&mut stage.session)?;
+        }
         let is_over = match stage.session.course() {
             Some(_) => stage.session.is_over(),
             None => device.is_done(),
@@ -250,7 +268,12 @@ impl Shell {
         stage.draw()?;
         let rate = stage.display_hz();
         let game = stage.session.game();
-        if let Some(warning) = stage.meter.frame((begun, drawn), game, rate) {
+        let warning = stage.meter.frame((begun, drawn), game, rate);
+        // A picture that took the time of several kept as many from being shown.
+        stage
+            .session
+            .picture((begun.elapsed().as_secs_f64() * rate) as u64);
+        if let Some(warning) = warning {
             eprintln!("warning: {}", warning.replace('\n', " "));
         }
         Ok(())
@@ -343,7 +366,13 @@ impl ApplicationHandler for Shell {
         self.keep(opened, events);
     }
 
-    fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+    fn window_event(&mut self, events: &ActiveEventLoop, id: WindowId, event: WindowEvent) {
+        if let Some(aside) = self.stage.as_mut().and_then(|stage| stage.aside.as_mut())
+            && aside.is(id)
+        {
+            aside.hear(&event);
+            return;
+        }
         if matches!(event, WindowEvent::RedrawRequested) {
             let drawn = self.frame(events);
             self.keep(drawn, events);

@@ -1,4 +1,5 @@
-//! The experimenter's window beside a headset: what the left eye sees, drawn anew at the window's own rate.
+//! The experimenter's window beside a headset: what the left eye sees, drawn anew at the window's own rate, and in a study the
+//! experimenter's board beside it.
 //!
 //! It has a device of its own and takes the game's lock only to copy what is seen, so that no screen slows the headset. Without a
 //! display there is none, and the session is the same.
@@ -11,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Result, anyhow};
 use game::{Button, Config};
-use renderer::{BackendChoice, Renderer, WindowTarget};
+use renderer::{Anchor, BackendChoice, Renderer, WindowTarget};
 use winit::application::ApplicationHandler;
 use winit::dpi::LogicalSize;
 use winit::event::WindowEvent;
@@ -21,6 +22,8 @@ use winit::window::{Window, WindowId};
 
 use super::{Shared, Watch};
 use crate::convert::{self, Stock};
+use crate::study::board::{Board, WIDTH};
+use crate::study::experimenter;
 
 /// Time between two pictures: enough to follow, little beside the headset's.
 const PERIOD: Duration = Duration::from_millis(33);
@@ -64,6 +67,8 @@ struct Stage {
     target: WindowTarget,
     renderer: Renderer,
     stock: Stock,
+    /// The experimenter's, in a study.
+    board: Option<Board>,
 }
 
 struct Mirror {
@@ -80,11 +85,19 @@ struct Mirror {
 
 impl Mirror {
     fn open(&self, events: &ActiveEventLoop) -> Result<Stage> {
+        let is_study = self.shared.with(|session| Ok(session.course().is_some()))?;
+        let is_study = is_study == Some(true);
+        let width = if is_study { 640.0 + WIDTH } else { 640.0 };
         let attributes = Window::default_attributes()
             .with_title("Bowling: what the participant sees")
-            .with_inner_size(LogicalSize::new(640, 640));
+            .with_inner_size(LogicalSize::new(width, 640.0));
         let window = Arc::new(events.create_window(attributes)?);
-        let (gpu, target) = WindowTarget::new(window, BackendChoice::Auto)?;
+        let (gpu, mut target) = WindowTarget::new(window, BackendChoice::Auto)?;
+        let board = is_study.then(|| Board::new(&gpu, target.window()));
+        if is_study {
+            let strip = f64::from(WIDTH) * target.window().scale_factor();
+            target.reserve_right(strip.ceil() as u32);
+        }
         let mut renderer = Renderer::new(&gpu, convert::settings(&self.config.shows))?;
         let mut stock = Stock::load(&mut renderer, &self.root, &self.config)?;
         stock.add_screen(&mut renderer, &self.root, &self.config)?;
@@ -92,14 +105,34 @@ impl Mirror {
             target,
             renderer,
             stock,
+            board,
         })
+    }
+
+    /// Does what the experimenter typed and clicked; a session that cannot be written any more ends.
+    fn attend(&mut self) -> Result<()> {
+        let Some(board) = self.stage.as_mut().and_then(|stage| stage.board.as_mut()) else {
+            return Ok(());
+        };
+        self.shared.with(|session| board.act(session)).map(|_| ())
     }
 
     fn draw(&mut self) -> Result<()> {
         let Some(stage) = &mut self.stage else {
             return Ok(());
         };
+        if let Some(board) = &mut stage.board {
+            let told = self
+                .shared
+                .with(|session| Ok(experimenter::told(session)))?;
+            if let Some(told) = told.flatten()
+                && let Some(image) = board.image(stage.target.window(), &told)?
+            {
+                stage.target.set_overlays(&[(Anchor::Center, &image)])?;
+            }
+        }
         let Some(view) = self.shared.left_eye() else {
+            stage.target.draw_overlays()?;
             return Ok(());
         };
         let seen = self.shared.with(|session| {
@@ -142,6 +175,16 @@ impl ApplicationHandler for Mirror {
     }
 
     fn window_event(&mut self, _: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        // In a study keys are typed on the board, and nobody presses for the participant.
+        let is_key = matches!(event, WindowEvent::KeyboardInput { .. });
+        if let Some(stage) = &mut self.stage
+            && let Some(board) = &mut stage.board
+        {
+            board.hear(stage.target.window(), &event);
+            if is_key {
+                return;
+            }
+        }
         match event {
             WindowEvent::RedrawRequested => {
                 if let Err(error) = self.draw() {
@@ -177,7 +220,10 @@ impl ApplicationHandler for Mirror {
     }
 
     fn about_to_wait(&mut self, events: &ActiveEventLoop) {
-        self.outcome = self.watch.look(Duration::ZERO);
+        self.outcome = match self.attend() {
+            Ok(()) => self.watch.look(Duration::ZERO),
+            Err(error) => Some(Err(error)),
+        };
         if self.outcome.is_some() {
             events.exit();
             return;

@@ -4,7 +4,11 @@
 //! experimenter does next. It knows no condition, only Red and Blue. Fed with the same happenings it is in the same place, so
 //! that a session that was broken off is taken up from its journal.
 
+mod outline;
+
 use serde::{Deserialize, Serialize};
+
+pub use outline::{Part, Standing};
 
 use crate::consent::Consent;
 use crate::plan::{Button, SessionRules};

@@ -127,6 +127,27 @@ impl TextPainter {
         self.finish(output, width, height, background)
     }
 
+    /// egui's context, for whoever turns a window's events into its input.
+    pub fn context(&self) -> &egui::Context {
+        &self.context
+    }
+
+    /// The image of a user interface that heard `input`: [`TextPainter::paint`] for one that is clicked and typed into. It keeps
+    /// its state from one call to the next, so it has a painter of its own.
+    ///
+    /// # Errors
+    /// If the size [pixels] is not one that the device draws.
+    pub fn interact(
+        &mut self,
+        input: egui::RawInput,
+        width: u32,
+        height: u32,
+        add_contents: impl FnMut(&mut egui::Ui),
+    ) -> Result<RgbaImage, RenderError> {
+        let output = self.context.run_ui(input, add_contents);
+        self.finish(output, width, height, [0; 4])
+    }
+
     fn run(
         &self,
         width: u32,
@@ -144,7 +165,7 @@ impl TextPainter {
         self.context.run_ui(input, add_contents)
     }
 
-    /// Paints what egui put out, at one pixel per point.
+    /// Paints what egui put out.
     fn finish(
         &mut self,
         mut output: egui::FullOutput,
@@ -176,10 +197,11 @@ impl TextPainter {
         background: [u8; 4],
     ) -> Result<RgbaImage, RenderError> {
         let (device, queue) = (&self.gpu.device, &self.gpu.queue);
-        let jobs = self.context.tessellate(output.shapes, 1.0);
+        let pixels_per_point = output.pixels_per_point;
+        let jobs = self.context.tessellate(output.shapes, pixels_per_point);
         let screen = egui_wgpu::ScreenDescriptor {
             size_in_pixels: [width, height],
-            pixels_per_point: 1.0,
+            pixels_per_point,
         };
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
         let target = texture::single(device, "text", [width, height], 1, FORMAT, usage);

@@ -37,6 +37,8 @@ pub struct WindowTarget {
     window: Arc<Window>,
     gpu: Gpu,
     config: wgpu::SurfaceConfiguration,
+    /// Width at the right edge that no view fills [pixels].
+    reserved: u32,
     present: PresentPass,
     eyes: Vec<Shown>,
     overlays: Vec<(Anchor, Shown)>,
@@ -65,6 +67,7 @@ impl WindowTarget {
             window,
             gpu: gpu.clone(),
             config,
+            reserved: 0,
             eyes: Vec::new(),
             overlays: Vec::new(),
         };
@@ -84,6 +87,11 @@ impl WindowTarget {
             self.config.height = height.min(most);
             self.surface.configure(&self.gpu.device, &self.config);
         }
+    }
+
+    /// Keeps a strip at the right edge free of views, for what is laid over it [pixels].
+    pub fn reserve_right(&mut self, width: u32) {
+        self.reserved = width;
     }
 
     /// Width over height of the part of the window that each of `count` views may fill.
@@ -127,8 +135,8 @@ impl WindowTarget {
         let Some(frame) = self.next_frame()? else {
             return Ok(false);
         };
-        let size = self.place_views(views);
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        let size = self.place_views(views);
         let targets: Vec<_> = self
             .eyes
             .iter()
@@ -136,6 +144,26 @@ impl WindowTarget {
             .collect();
         let eyes: Vec<_> = views.iter().copied().zip(&targets).collect();
         renderer.record(&mut encoder, scene, &eyes, size)?;
+        self.show_frame(frame, encoder);
+        Ok(true)
+    }
+
+    /// Shows the texts alone, without a renderer. Returns `false`, having drawn nothing, while the window is hidden or not ready.
+    ///
+    /// # Errors
+    /// If the window is lost for good.
+    pub fn draw_overlays(&mut self) -> Result<bool, RenderError> {
+        let Some(frame) = self.next_frame()? else {
+            return Ok(false);
+        };
+        self.eyes.clear();
+        let encoder = self.gpu.device.create_command_encoder(&Default::default());
+        self.show_frame(frame, encoder);
+        Ok(true)
+    }
+
+    /// Puts the eyes' pictures and the texts into a frame of the surface, and shows it.
+    fn show_frame(&mut self, frame: wgpu::SurfaceTexture, mut encoder: wgpu::CommandEncoder) {
         self.place_overlays();
         let overlays = self.overlays.iter().map(|(_, shown)| &shown.picture);
         let pictures = self.eyes.iter().map(|eye| &eye.picture).chain(overlays);
@@ -144,7 +172,6 @@ impl WindowTarget {
         self.gpu.queue.submit([encoder.finish()]);
         self.window.pre_present_notify();
         self.gpu.queue.present(frame);
-        Ok(true)
     }
 
     /// The surface's next texture, after one repair where the window changed under it.
@@ -176,7 +203,8 @@ impl WindowTarget {
 
     /// The part of the window that belongs to a view.
     fn part(&self, index: usize, count: usize) -> Place {
-        let width = (self.config.width / count.max(1) as u32).max(1);
+        let free = self.config.width.saturating_sub(self.reserved);
+        let width = (free / count.max(1) as u32).max(1);
         Place {
             x: width * index as u32,
             y: 0,
