@@ -4,6 +4,8 @@
 //! which condition a button meant. What the plan decided is fixed when the study is made, and `plan/SHA256SUMS` shows a changed byte.
 
 mod erase;
+mod error;
+mod fixed;
 mod ids;
 mod lock;
 mod register;
@@ -11,27 +13,19 @@ mod register;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::consent::{ConsentError, ConsentForm};
+use crate::consent::ConsentForm;
 use crate::digest;
 use crate::files::{self, FileError};
-use crate::plan::{Plan, PlanError, Row, allocation_csv};
-use crate::questionnaire::{Questionnaire, QuestionnaireError};
+use crate::plan::{Plan, Row, allocation_csv};
+use crate::questionnaire::Questionnaire;
 use crate::random::SplitMix64;
 
 pub use erase::Erased;
+pub use error::StudyError;
+use fixed::FIXED;
 pub use ids::{ParticipantId, fresh_id};
 pub use lock::Lock;
 pub use register::Assignment;
-
-/// Files of `plan/` that never change.
-const FIXED: [&str; 5] = [
-    "study.toml",
-    "allocation.csv",
-    "questionnaire.toml",
-    "consent.md",
-    "salt",
-];
-const SUMS: &str = "SHA256SUMS";
 
 /// An opened study.
 #[derive(Debug, Clone)]
@@ -42,83 +36,6 @@ pub struct Study {
     questionnaire: Questionnaire,
     consent_form: ConsentForm,
     salt: String,
-}
-
-/// Why something with a study cannot be done.
-#[derive(Debug, thiserror::Error)]
-pub enum StudyError {
-    /// A file or folder cannot be read or written.
-    #[error(transparent)]
-    File(#[from] FileError),
-    /// The plan cannot be used.
-    #[error(transparent)]
-    Plan(#[from] PlanError),
-    /// The questionnaire cannot be used.
-    #[error(transparent)]
-    Questionnaire(#[from] QuestionnaireError),
-    /// The consent form cannot be used.
-    #[error(transparent)]
-    Consent(#[from] ConsentError),
-    /// There is no study in the folder.
-    #[error("{} is no study: it has no plan/study.toml; make one with `bowling study new`", .0.display())]
-    NotAStudy(PathBuf),
-    /// A new study needs a folder of its own.
-    #[error("{} is not empty, and nothing in it is overwritten: choose a new or empty folder", .0.display())]
-    NotEmpty(PathBuf),
-    /// A file that never changes was changed.
-    #[error("{} was changed since the study was made: restore it from a backup, or make a new study for a new plan", .0.display())]
-    Changed(PathBuf),
-    /// Another program has the study.
-    #[error("the study in {} is in use by another program (process {holder}): wait until it has ended, or end it", root.display())]
-    InUse {
-        /// The study's folder.
-        root: PathBuf,
-        /// Number of that process, as it wrote it down.
-        holder: String,
-    },
-    /// No slot is free.
-    #[error(
-        "all {0} slots of the plan are taken: make a study with more participants, or erase one who withdrew"
-    )]
-    Full(u32),
-    /// There is no such participant.
-    #[error("no participant of this study is called {0}: `bowling study status` lists them")]
-    Unknown(String),
-    /// A text that is no id.
-    #[error("{0:?} is no participant's id: it looks like sub-p7k2")]
-    NotAnId(String),
-    /// A register has a line that is none.
-    #[error("{} line {line} is not as this program writes it: restore the file from a backup", path.display())]
-    Register {
-        /// Which file.
-        path: PathBuf,
-        /// Line, from 1.
-        line: usize,
-    },
-    /// Somebody has to be named.
-    #[error(
-        "{0}: say who it is with a word or name, without commas and line breaks, and without a participant's id"
-    )]
-    Who(&'static str),
-    /// Something of an erased participant is left in files that this program did not write.
-    #[error(
-        "{id} is still named in {}: this program did not write these files and does not edit them, so remove it there and erase again",
-        paths(files)
-    )]
-    Traces {
-        /// The participant.
-        id: ParticipantId,
-        /// The files.
-        files: Vec<PathBuf>,
-    },
-}
-
-fn paths(files: &[PathBuf]) -> String {
-    let names: Vec<String> = files
-        .iter()
-        .map(|path| path.display().to_string())
-        .collect();
-    names.join(", ")
 }
 
 impl Study {
@@ -157,7 +74,7 @@ impl Study {
             consent.to_owned(),
             salt,
         ];
-        if let Err(error) = write_fixed(root, &texts) {
+        if let Err(error) = fixed::write(root, &texts) {
             // Only what was just made is in the folder.
             let made = if is_new {
                 vec![root.to_path_buf()]
@@ -181,7 +98,7 @@ impl Study {
         if !folder.join("study.toml").is_file() {
             return Err(StudyError::NotAStudy(root.to_path_buf()));
         }
-        let texts = read_fixed(&folder)?;
+        let texts = fixed::read(&folder)?;
         let [plan, allocation, questionnaire, consent, salt] = texts;
         let plan = Plan::parse(&plan, &folder.join(FIXED[0]))?;
         Ok(Study {
@@ -304,45 +221,9 @@ impl Study {
     }
 }
 
-fn write_fixed(root: &Path, texts: &[String; 5]) -> Result<(), FileError> {
-    files::create_folder(root)?;
-    let folder = root.join("plan");
-    files::create_folder(&folder)?;
-    files::create_folder(&root.join("data"))?;
-    let mut sums = String::new();
-    for (name, text) in FIXED.iter().zip(texts) {
-        files::write(&folder.join(name), text.as_bytes())?;
-        // As `sha256sum` writes and checks it.
-        sums += &format!("{}  {name}\n", digest::sha256(text.as_bytes()));
-    }
-    files::write(&folder.join(SUMS), sums.as_bytes())
-}
-
-fn read_fixed(folder: &Path) -> Result<[String; 5], StudyError> {
-    let mut texts: [String; 5] = Default::default();
-    let mut sums = String::new();
-    for (name, text) in FIXED.iter().zip(&mut texts) {
-        let path = folder.join(name);
-        let bytes = fs::read(&path).map_err(FileError::at("read", &path))?;
-        sums += &format!("{}  {name}\n", digest::sha256(&bytes));
-        *text = String::from_utf8(bytes).map_err(|_| StudyError::Changed(path))?;
-    }
-    let path = folder.join(SUMS);
-    let kept = fs::read(&path).map_err(FileError::at("read", &path))?;
-    if kept == sums.as_bytes() {
-        return Ok(texts);
-    }
-    let kept = String::from_utf8_lossy(&kept);
-    let changed = FIXED
-        .iter()
-        .zip(sums.lines())
-        .find(|(_, line)| !kept.lines().any(|kept| kept == *line));
-    let name = changed.map_or(SUMS, |(name, _)| name);
-    Err(StudyError::Changed(folder.join(name)))
-}
-
 #[cfg(test)]
 pub(crate) mod tests {
+    use super::fixed::SUMS;
     use super::*;
     use crate::plan::{Scheme, SessionRules};
     use std::os::unix::fs::PermissionsExt;
