@@ -1,5 +1,10 @@
 //! Studies: simulated whole, killed at any instant, damaged on purpose, and given away.
 
+/// The disk, the folder and the clock while a session runs.
+mod loss;
+/// Studies of differences.
+mod pairs;
+
 use std::fs;
 use std::io::Read;
 use std::os::unix::fs::PermissionsExt;
@@ -11,9 +16,10 @@ use std::time::Duration;
 use bowling_app::panel::{Choice, Panel, PanelStock};
 use bowling_app::pictures::Wanted;
 use bowling_app::session::Session;
+use bowling_app::study::experimenter;
 use bowling_app::study::seat::{self, Guest};
 use experiment::journal::Lines;
-use experiment::protocol::{AnsweredIn, Place};
+use experiment::protocol::{AnsweredIn, Place, Standing};
 use experiment::questionnaire::Answer;
 use experiment::random::SplitMix64;
 use experiment::study::{ParticipantId, Study};
@@ -73,7 +79,8 @@ fn simulate(folder: &Path, subjects: &str, frames: &str) {
 
 /// A copy of the simulated study that a test may change.
 fn copy(name: &str) -> PathBuf {
-    let to = fresh_folder("study-copies").join(name);
+    // A folder for each: a fresh one takes what was in it away, also from a test beside this one.
+    let to = fresh_folder(&format!("study-copy-{name}")).join("study");
     copy_folder(simulated(), &to);
     to
 }
@@ -128,6 +135,73 @@ fn a_simulated_study_is_complete_and_its_tables_come_out_of_the_journals_again()
     for (one, other) in before.iter().zip(&after) {
         assert!(one == other, "{} has changed", one.0.display());
     }
+}
+
+/// Nobody answers everything at one instant: each answer comes 2 to 8 s after the one before it, and the questions behind a
+/// game after its end.
+#[test]
+fn simulated_answers_take_their_time() {
+    for journal in journals(simulated()) {
+        let entries = entries(&journal);
+        let at = |entry: &Value| entry["study"]["act"]["at_s"].as_f64();
+        let times: Vec<f64> = entries.iter().filter_map(at).collect();
+        assert!(times.len() > 8, "{times:?}");
+        for two in times.windows(2) {
+            assert!(two[1] - two[0] >= 2.0, "{times:?}");
+        }
+        let within = times.windows(2).filter(|two| two[1] - two[0] <= 8.1);
+        // All but the first of each of the three forms.
+        assert_eq!(within.count(), times.len() - 3, "{times:?}");
+        let step = |entry: &&Value| entry["event"]["event"] == "game_over";
+        let over = entries.iter().rfind(step).expect("two games");
+        let over_s = over["event"]["step"].as_f64().expect("a number") / 720.0;
+        assert!(times.last().is_some_and(|last| *last > over_s + 2.0));
+    }
+}
+
+/// The terminal and the window say this and no more; typed lines do the same in both.
+#[test]
+fn the_experimenter_is_told_the_step_and_typed_lines_are_taken() {
+    let (study, who, mut session) = seated("study-experimenter");
+    let told = experimenter::told(&session).expect("a study");
+    assert!(told.due.starts_with("[1/3]"), "{}", told.due);
+    assert_eq!(told.parts[0].standing, Standing::On);
+    assert_eq!(
+        told.health,
+        ["Head not tracked yet.", "Hand not tracked yet."]
+    );
+    let mut take = |line: &str| experimenter::take(line, &mut session).expect("writable");
+    assert!(take("2").is_none());
+    assert!(take("perhaps").is_some_and(|reply| reply.contains("no answer")));
+    assert!(take("yes").is_none());
+    assert!(take("6").is_some_and(|reply| reply.contains("advises to end here")));
+    assert!(take("hello").is_some_and(|reply| reply.contains("Nothing is asked")));
+    assert!(take("/note ").is_some_and(|reply| reply.contains("no words")));
+    assert!(take("/note a lamp broke").is_some_and(|reply| reply.contains("kept")));
+    assert!(take("/help").is_some_and(|reply| reply.contains("/stop REASON")));
+    assert!(take("/status").is_some_and(|reply| reply.contains("Head")));
+    let told = experimenter::told(&session).expect("a study");
+    assert_eq!(told.due, "1 training throw to go");
+    assert_eq!(told.parts[0].standing, Standing::Done);
+    let words: Vec<&str> = told.parts.iter().map(|part| part.name.as_str()).collect();
+    let words = words.join(" ").to_lowercase();
+    for word in ["elastic", "friction", "shape", "presence", "condition"] {
+        assert!(!words.contains(word), "{words}");
+    }
+    experimenter::take("/stop it is late", &mut session).expect("writable");
+    assert!(session.is_over());
+    session
+        .finish(None, Wanted { video: false }, &mut |_| ())
+        .expect("writable");
+    let entries = entries(&study.journal_folder(&who, 1).join("session.jsonl"));
+    let note = |kind: &str| {
+        let mut notes = entries.iter().map(|entry| &entry["study"]);
+        notes
+            .find(|note| note["note"] == kind)
+            .expect("it is noted")
+    };
+    assert_eq!(note("remark")["text"], "a lamp broke");
+    assert_eq!(note("stopped")["reason"], "it is late");
 }
 
 #[test]
@@ -514,11 +588,15 @@ fn a_hand_answers_by_pointing_and_stops_at_the_sign() {
 
 /// A study for one participant, without a session.
 fn new_study(name: &str, frames: &str) -> PathBuf {
-    let folder = fresh_folder(name).join("study");
+    new_study_in(&fresh_folder(name).join("study"), frames)
+}
+
+/// The same in a folder that is named.
+fn new_study_in(folder: &Path, frames: &str) -> PathBuf {
     said(&[
         "study",
         "new",
-        text(&folder),
+        text(folder),
         "--subjects",
         "1",
         "--frames",
@@ -534,7 +612,7 @@ fn new_study(name: &str, frames: &str) -> PathBuf {
         "--retention-until",
         "2099-12-31",
     ]);
-    folder
+    folder.to_owned()
 }
 
 /// What goes on with a study of one participant: its first session, one whose program was killed before the first line, or

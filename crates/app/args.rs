@@ -17,7 +17,7 @@ pub use analyse::{AnalyseArguments, PowerArguments};
 pub use capture::{CaptureArguments, ViewChoice};
 pub use compare::{CompareArguments, Sweep};
 pub use study::{
-    EraseArguments, ExportArguments, NewStudyArguments, PlanArguments, ResumeArguments,
+    EraseArguments, ExportArguments, NewStudyArguments, PlanArguments, ResumeArguments, RuleChoice,
     RunArguments, SimulateArguments, StudyArguments, StudyCommand, StudyFolder, UnblindArguments,
 };
 pub use throw::{

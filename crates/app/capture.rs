@@ -10,7 +10,7 @@ use sound::Listener;
 
 use crate::args::{CaptureArguments, ViewChoice, unusable};
 use crate::convert;
-use crate::journal;
+use crate::journal::{self, Changes};
 use crate::output::Draft;
 use crate::pictures::Painter;
 use crate::pictures::avi::AviWriter;
@@ -47,7 +47,9 @@ pub fn capture(arguments: &CaptureArguments, root: &Path) -> Result<()> {
     let mut game =
         Game::new(conditions, story.header.frames).context("cannot set up the recorded alley")?;
     let mut shots = Shots::new(arguments.at, until, Reporter::of(&config));
-    for input in &story.inputs {
+    let changes = Changes::of(&path, &story.header, &story.notes)?;
+    for (index, input) in story.inputs.iter().enumerate() {
+        changes.before(index, &mut game)?;
         game.step(input);
         shots.look(&game);
         if game.time() > until {

@@ -15,6 +15,11 @@ pub trait Device {
     /// The input of the next frame; `game` is as the last frame left it, and is what can be seen.
     fn next(&mut self, game: &Game) -> Input;
 
+    /// The input of a frame in which the participant is asked something; people do then as they like.
+    fn wait(&mut self, game: &Game) -> Input {
+        self.next(game)
+    }
+
     /// True when there is nothing left to do for it, or it wants to stop.
     fn is_done(&self) -> bool;
 }

@@ -3,6 +3,7 @@
 //! A line is handed to the writer before the game sees it. How lines are numbered, checked and written is
 //! [`experiment::journal`]'s; here is what they mean.
 
+mod changes;
 mod read;
 pub mod settings;
 mod write;
@@ -12,8 +13,9 @@ use glam::{DQuat, DVec3};
 use physics::Pose;
 use serde::{Deserialize, Serialize};
 
+pub use changes::Changes;
 pub use experiment::journal::SCHEMA;
-pub use read::{Recording, Story, read, read_open};
+pub use read::{DeviceLine, Recording, Story, kept, read, read_open};
 pub use write::Journal;
 
 use crate::boundary::Refused;

@@ -160,6 +160,10 @@ fn content(session: &Session) -> Option<Content> {
         });
     }
     match course.protocol().place() {
+        Place::Comparing(number) => {
+            let count = course.staircase_plan().map_or(number, |plan| plan.trials);
+            Some(Content::Pair(number, count))
+        }
         Place::Debriefing => Some(Content::Words(
             "Thank you. You can take the headset off; the experimenter tells you more.".to_owned(),
         )),
@@ -170,6 +174,7 @@ fn content(session: &Session) -> Option<Content> {
 fn choose(choice: &Choice, session: &mut Session, answered_in: AnsweredIn) -> Result<()> {
     match choice {
         Choice::Answer(answer) => session.answer(Act::Answer(answer.clone()), answered_in),
+        Choice::Reply(reply) => session.compare(*reply, answered_in),
         Choice::Skip => session.answer(Act::Skip, answered_in),
         // Before the first item there is none: nothing happens.
         Choice::Back => session.answer(Act::Back, answered_in).or_else(|error| {

@@ -42,6 +42,7 @@ pub fn replay(folder: &Path) -> Result<()> {
     let mut table_problem = None;
     let mut events = Vec::new();
     for (index, input) in recording.inputs.iter().enumerate() {
+        recording.changes.before(index, &mut game)?;
         game.step(input);
         for event in game.events() {
             if let EventKind::GameStarted { button } = event.kind {

@@ -3,6 +3,7 @@
 //! A loop calls [`Session::frame`] once per displayed frame and [`Session::finish`] when it is over,
 //! also when somebody interrupts it: the folder is in order then, up to that frame.
 
+mod asking;
 pub mod course;
 mod health;
 mod recording;
@@ -12,13 +13,12 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
-use experiment::protocol::{AnsweredIn, Note, Place, Who};
-use experiment::questionnaire::{Act, Form};
+use experiment::protocol::{Note, Place};
 use game::{Button, Conditions, DisplayProfileName, Event, EventKind, Game, Input};
 use physics::{Stopwatch, Unwatched};
 
 use crate::boundary::{Boundary, Refused};
-use crate::journal::{self, End, Header, Journal};
+use crate::journal::{self, Changes, End, Header, Journal};
 use crate::panel::Pointing;
 use crate::pictures::{Painter, Wanted};
 use course::Course;
@@ -41,6 +41,8 @@ pub struct Session {
     games_over: u32,
     trigger: f64,
     health: Health,
+    /// The throw of a pair that the alley is laid out for.
+    laid_out: Option<(u32, u8)>,
 }
 
 /// What a session left.
@@ -110,12 +112,13 @@ impl Session {
             games_over: 0,
             trigger: 0.0,
             health: Health::default(),
+            laid_out: None,
         }
     }
 
     /// Begins, or takes up, a study's session.
     fn sit_down(seat: Seat, header: Header, mut game: Game, is_script: bool) -> Result<Self> {
-        let mut course = Course::new(seat.plan);
+        let mut course = Course::new(seat.plan)?;
         let header = Header {
             settings_digest: Some(seat.settings_digest),
             continues: seat.before.as_ref().map(|(continues, _)| continues.clone()),
@@ -124,7 +127,10 @@ impl Session {
         let mut started = Vec::new();
         let mut games_over = 0;
         if let Some((continues, story)) = &seat.before {
-            for input in &story.inputs {
+            let earlier = seat.journal.with_file_name(&continues.journal);
+            let changes = Changes::of(&earlier, &story.header, &story.notes)?;
+            for (index, input) in story.inputs.iter().enumerate() {
+                changes.before(index, &mut game)?;
                 game.step(input);
                 count(game.events(), &mut started, &mut games_over);
             }
@@ -167,6 +173,7 @@ impl Session {
         if let Some(course) = &self.course {
             input.locked = course.protocol().locked();
         }
+        self.lay_out()?;
         self.trigger = input.trigger;
         let step_hz = self.game.config().physics.step_hz;
         self.health.follow(&input, f64::from(input.steps) / step_hz);
@@ -190,11 +197,6 @@ impl Session {
         Ok(())
     }
 
-    /// The course of a study's session.
-    pub fn course(&self) -> Option<&Course> {
-        self.course.as_ref()
-    }
-
     /// Where the participant points from, while the head is tracked.
     pub fn pointing(&self) -> Option<Pointing> {
         Some(Pointing {
@@ -202,70 +204,6 @@ impl Session {
             hand: self.game.hand_pose_world(),
             trigger: self.trigger,
         })
-    }
-
-    /// The form that is to be filled in now.
-    pub fn form(&self) -> Option<&Form> {
-        self.course()?.form()
-    }
-
-    /// True when a study's session is complete or was stopped.
-    pub fn is_over(&self) -> bool {
-        self.course
-            .as_ref()
-            .is_some_and(|course| course.protocol().is_over())
-    }
-
-    /// Takes an act at the form that is due.
-    ///
-    /// # Errors
-    /// When no form is due, the act does not fit, or the journal cannot be written.
-    pub fn answer(&mut self, act: Act, answered_in: AnsweredIn) -> Result<()> {
-        let at_s = self.now();
-        let course = self.course.as_mut().context(NO_STUDY)?;
-        let (note, reached) = course.act(at_s, act, answered_in)?;
-        self.journal.study(&note)?;
-        self.reached(reached)
-    }
-
-    /// The participant was told what the study is about.
-    ///
-    /// # Errors
-    /// When this is no study's session, or the journal cannot be written.
-    pub fn debriefed(&mut self) -> Result<()> {
-        let reached = self.course.as_mut().context(NO_STUDY)?.debriefed();
-        self.reached(reached)
-    }
-
-    /// Keeps a remark of the experimenter.
-    ///
-    /// # Errors
-    /// When the journal cannot be written.
-    pub fn remark(&mut self, text: String) -> Result<()> {
-        let at_s = self.now();
-        self.journal.study(&Note::Remark { text, at_s })
-    }
-
-    /// Ends a study's session at once.
-    ///
-    /// # Errors
-    /// When this is no study's session, or the journal cannot be written.
-    pub fn stop(&mut self, by: Who, reason: String) -> Result<()> {
-        let at_s = self.now();
-        let note = self
-            .course
-            .as_mut()
-            .context(NO_STUDY)?
-            .stop(by, reason, at_s);
-        self.journal.study(&note)
-    }
-
-    fn reached(&mut self, place: Option<Place>) -> Result<()> {
-        let at_s = self.now();
-        match place {
-            Some(place) => self.journal.study(&Note::Reached { place, at_s }),
-            None => Ok(()),
-        }
     }
 
     /// Time since the session began: simulated where a script plays, else measured [s].
@@ -356,8 +294,6 @@ impl Session {
         Ok(Summary { files, ..summary })
     }
 }
-
-const NO_STUDY: &str = "this session is no part of a study";
 
 fn now(clock: Option<(Instant, f64)>, game: &Game) -> f64 {
     clock.map_or_else(

@@ -239,7 +239,11 @@ impl Shell {
         let count = (late.min(LONGEST_CATCH_UP_S) / self.frame_s) as u32;
         let device = self.player.due(count);
         for _ in 0..count {
-            let input = device.next(stage.session.game());
+            let input = if stage.session.is_asking() {
+                device.wait(stage.session.game())
+            } else {
+                device.next(stage.session.game())
+            };
             let watch = stage.meter.stopwatch();
             stage.session.frame_watched(input, watch)?;
             stage.overlay.notice(stage.session.game());

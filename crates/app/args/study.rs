@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Subcommand};
+use clap::{Args, Subcommand, ValueEnum};
 
 use super::DeviceChoice;
 
@@ -70,13 +70,18 @@ pub struct PlanArguments {
     )]
     pub seed: u64,
 
-    /// Design: table2 (Table 2 of the paper), balanced (equal cells), full (every pair of conditions), or a file.
+    /// Design: table2 (Table 2 of the paper), balanced (equal cells), full (every pair of conditions), continuous (drawn values), staircase
+    /// (pairs of throws instead of games, for a just-noticeable difference), or a file.
     #[arg(
         long,
-        value_name = "table2|balanced|full|FILE",
+        value_name = "table2|balanced|full|continuous|staircase|FILE",
         default_value = "table2"
     )]
     pub scheme: String,
+
+    /// What pairs of throws differ in, with --scheme staircase.
+    #[command(flatten)]
+    pub staircase: StaircaseArguments,
 
     /// Bowling frames per game.
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 10, value_parser = clap::value_parser!(u32).range(1..=10))]
@@ -97,6 +102,53 @@ pub struct PlanArguments {
     /// Let a press of a button that is not due start its game instead of refusing it.
     #[arg(long)]
     pub allow_undue_presses: bool,
+}
+
+/// What a study of differences compares.
+#[derive(Debug, Args)]
+pub struct StaircaseArguments {
+    /// With --scheme staircase: the setting that differs, any number of config/default.toml, as objects.elasticity.
+    #[arg(long, value_name = "KEY")]
+    pub parameter: Option<String>,
+
+    /// With --scheme staircase: its value in one throw of every pair.
+    #[arg(long, value_name = "VALUE", allow_negative_numbers = true)]
+    pub standard: Option<f64>,
+
+    /// With --scheme staircase: its value at the largest difference.
+    #[arg(long, value_name = "VALUE", allow_negative_numbers = true)]
+    pub furthest: Option<f64>,
+
+    /// With --scheme staircase: how the next difference is chosen.
+    #[arg(long, value_enum, default_value_t = RuleChoice::Bayesian)]
+    pub rule: RuleChoice,
+
+    /// With --scheme staircase: pairs of throws of a participant, those without a difference included.
+    #[arg(
+        long,
+        value_name = "N",
+        allow_negative_numbers = true,
+        default_value_t = 40
+    )]
+    pub pairs: u32,
+
+    /// With --scheme staircase: share of pairs without a difference, 0 to 0.5.
+    #[arg(
+        long,
+        value_name = "SHARE",
+        allow_negative_numbers = true,
+        default_value_t = 0.2
+    )]
+    pub catch_share: f64,
+}
+
+/// How the next difference is chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum RuleChoice {
+    /// Larger after 'same', smaller after two 'different' in a row.
+    OneUpTwoDown,
+    /// The one whose answer is expected to tell most.
+    Bayesian,
 }
 
 /// Arguments of `bowling study new`.
@@ -225,4 +277,9 @@ pub struct SimulateArguments {
     /// What the plan is made from.
     #[command(flatten)]
     pub plan: PlanArguments,
+
+    /// With --scheme staircase: the difference, in the parameter's unit, that the simulated participants call different 70.7 % of
+    /// the time [default: a quarter of the range].
+    #[arg(long, value_name = "DIFFERENCE", allow_negative_numbers = true)]
+    pub threshold: Option<f64>,
 }

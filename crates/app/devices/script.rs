@@ -199,6 +199,24 @@ impl Script {
         on_rack.find(|ball| ball.index == 0 || self.waited > PATIENCE)
     }
 
+    /// The body as it is tracked now.
+    fn input(&self, walk_forward: bool, walk_back: bool) -> Input {
+        let measured = self.velocities == Velocities::Measured;
+        Input {
+            head: Some(self.body.head(measured)),
+            hand: Some(self.body.tracked(&self.hand, measured)),
+            trigger: self.trigger,
+            walk_forward,
+            walk_back,
+            press_red: false,
+            press_blue: false,
+            locked: [false; 2],
+            recentred: false,
+            steps: self.steps,
+            trigger_change: None,
+        }
+    }
+
     fn world_from_body(&self, sight: &Sight) -> Pose {
         sight.world_from_tracking * self.body.pose()
     }
@@ -324,20 +342,14 @@ impl Device for Script {
         let (walk_forward, walk_back) = self.act(&sight);
         self.goal.nod = self.nod_towards(&sight);
         self.body.approach(&self.goal, self.dt);
-        let measured = self.velocities == Velocities::Measured;
-        Input {
-            head: Some(self.body.head(measured)),
-            hand: Some(self.body.tracked(&self.hand, measured)),
-            trigger: self.trigger,
-            walk_forward,
-            walk_back,
-            press_red: false,
-            press_blue: false,
-            locked: [false; 2],
-            recentred: false,
-            steps: self.steps,
-            trigger_change: None,
-        }
+        self.input(walk_forward, walk_back)
+    }
+
+    /// Stands still and reads; what was begun goes on afterwards.
+    fn wait(&mut self, game: &Game) -> Input {
+        self.notice(game);
+        self.hand = HandState::still(self.hand.position, self.hand.rotation);
+        self.input(false, false)
     }
 
     fn is_done(&self) -> bool {

@@ -7,7 +7,7 @@ use anyhow::{Context, Result, anyhow, bail};
 use experiment::journal::{Lines, Torn};
 use game::{Conditions, Input};
 
-use super::{End, Entry, Header, settings};
+use super::{Changes, End, Entry, Header, settings};
 
 /// A whole session.
 #[derive(Debug)]
@@ -18,6 +18,8 @@ pub struct Recording {
     pub conditions: Conditions,
     /// What the game consumed, frame by frame.
     pub inputs: Vec<Input>,
+    /// What was laid out before which input.
+    pub changes: Changes,
     /// What happened: the index of its input, and the event as recorded.
     pub events: Vec<(usize, serde_json::Value)>,
     /// How it ended.
@@ -35,12 +37,25 @@ pub struct Story {
     pub events: Vec<(usize, serde_json::Value)>,
     /// What the experiment noted: how many inputs there were before it, and the note.
     pub notes: Vec<(usize, serde_json::Value)>,
+    /// What the device said of itself, but for its pictures and throws.
+    pub device: Vec<DeviceLine>,
     /// How it ended, if it did in order.
     pub end: Option<End>,
     /// The last line, where a crash cut it short.
     pub torn: Option<Torn>,
     /// Number of the last whole line.
     pub lines: usize,
+}
+
+/// Something that the device said of itself.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DeviceLine {
+    /// How many inputs there were before it.
+    pub at: usize,
+    /// The runtime's time of the last picture before it [s]; goes on while the game waits. `None` without a headset.
+    pub time_s: Option<f64>,
+    /// What it said.
+    pub said: serde_json::Value,
 }
 
 /// Reads the journal of a session that was closed, and of one that was resumed the parts before it.
@@ -53,6 +68,7 @@ pub fn read(path: &Path) -> Result<Recording> {
         header,
         inputs,
         events,
+        notes,
         end,
         torn,
         lines,
@@ -74,6 +90,7 @@ pub fn read(path: &Path) -> Result<Recording> {
     })?;
     Ok(Recording {
         conditions: settings::of(path, &header)?,
+        changes: Changes::of(path, &header, &notes)?,
         header,
         inputs,
         events,
@@ -104,11 +121,30 @@ fn prepend_earlier(path: &Path, story: &mut Story) -> Result<()> {
     let mut events = before.events;
     events.retain(|(at, _)| *at < count);
     events.extend(std::mem::take(&mut story.events).into_iter().map(shift));
-    // What was answered or noted counts, wherever the play went on from.
-    let mut notes = before.notes;
+    let mut notes = kept(before.notes, count);
     notes.extend(std::mem::take(&mut story.notes).into_iter().map(shift));
     (story.inputs, story.events, story.notes) = (inputs, events, notes);
+    let mut device = before.device;
+    device.retain(|line| line.at <= count);
+    device.extend(std::mem::take(&mut story.device).into_iter().map(|line| {
+        let at = line.at + count;
+        DeviceLine { at, ..line }
+    }));
+    story.device = device;
     Ok(())
+}
+
+/// The notes of a session that goes on behind input `count`: what was answered or noted counts wherever that is, and happened
+/// before what follows; what was laid out behind it does not.
+pub fn kept(
+    notes: Vec<(usize, serde_json::Value)>,
+    count: usize,
+) -> Vec<(usize, serde_json::Value)> {
+    notes
+        .into_iter()
+        .filter(|(at, note)| *at < count || note["note"] != "throw")
+        .map(|(at, note)| (at.min(count), note))
+        .collect()
 }
 
 /// Reads a journal as far as it goes, behind what counts of those that it continues.
@@ -148,10 +184,12 @@ fn tell(lines: &mut Lines) -> Result<Story> {
         inputs: Vec::new(),
         events: Vec::new(),
         notes: Vec::new(),
+        device: Vec::new(),
         end: None,
         torn: None,
         lines: 1,
     };
+    let mut time_s = None;
     while let Some(entry) = next_entry(lines)? {
         if story.end.is_some() {
             bail!("something follows the end of the session");
@@ -163,7 +201,14 @@ fn tell(lines: &mut Lines) -> Result<Story> {
                 Some(input) => story.events.push((input, event)),
                 None => bail!("an event before the first input"),
             },
-            Entry::Device(_) => {}
+            Entry::Device(said) => {
+                if let Some(time) = said["frame"]["xr_time_ns"].as_i64() {
+                    time_s = Some(time as f64 * 1e-9);
+                } else if said.get("throw").is_none() && said.get("after_throw").is_none() {
+                    let at = story.inputs.len();
+                    story.device.push(DeviceLine { at, time_s, said });
+                }
+            }
             Entry::Study(note) => story.notes.push((story.inputs.len(), note)),
             Entry::End(end) => story.end = Some(end),
         }

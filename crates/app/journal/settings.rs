@@ -25,13 +25,7 @@ pub fn of(journal: &Path, header: &Header) -> Result<Conditions> {
 
 /// What the plan keeps for STUDY/data/sourcedata/PARTICIPANT/SESSION/JOURNAL.
 fn kept(journal: &Path, digest: &str) -> Result<Conditions> {
-    let (study, participant, session) = place(journal).with_context(|| {
-        format!(
-            "{}: the settings of a study's session lie with its plan: leave the journal inside the study's folder",
-            journal.display()
-        )
-    })?;
-    let study = Study::open(&study)?;
+    let (study, participant, session) = place(journal)?;
     let text = study
         .settings_of(&participant, session, digest)?
         .with_context(|| {
@@ -44,8 +38,27 @@ fn kept(journal: &Path, digest: &str) -> Result<Conditions> {
     serde_json::from_str(&text).context("settings that a study keeps cannot be understood")
 }
 
+/// The study that a journal lies in, and whose session it is.
+///
+/// # Errors
+/// When it lies in none.
+pub fn study_of(journal: &Path) -> Result<(Study, ParticipantId)> {
+    let (study, participant, _) = place(journal)?;
+    Ok((study, participant))
+}
+
+fn place(journal: &Path) -> Result<(Study, ParticipantId, u32)> {
+    let (study, participant, session) = folders(journal).with_context(|| {
+        format!(
+            "{}: the settings of a study's session lie with its plan: leave the journal inside the study's folder",
+            journal.display()
+        )
+    })?;
+    Ok((Study::open(&study)?, participant, session))
+}
+
 /// The study, participant and session of a journal in a study's folder.
-fn place(journal: &Path) -> Option<(std::path::PathBuf, ParticipantId, u32)> {
+fn folders(journal: &Path) -> Option<(std::path::PathBuf, ParticipantId, u32)> {
     let journal = journal.canonicalize().ok()?;
     let mut folders = journal.ancestors().skip(1);
     let session = folders.next()?.file_name()?.to_str()?;

@@ -1,6 +1,7 @@
 //! Where things lie on the panel, in pixels of its picture.
 
 use experiment::questionnaire::{Answer, Item, Kind, SCALE_STEPS};
+use experiment::staircase::Reply;
 use glam::{DVec2, UVec2};
 
 /// Size of the picture [pixels]: 640 per metre, more than a headset shows at 2 m.
@@ -29,6 +30,8 @@ pub enum Content {
         /// What was answered before.
         given: Option<Answer>,
     },
+    /// A pair of throws is to be compared: its number, and how many there are.
+    Pair(u32, u32),
     /// Words alone.
     Words(String),
 }
@@ -38,6 +41,8 @@ pub enum Content {
 pub enum Choice {
     /// This answer.
     Answer(Answer),
+    /// This of a pair of throws.
+    Reply(Reply),
     /// No answer.
     Skip,
     /// The question before.
@@ -70,9 +75,24 @@ impl Layout {
     /// The layout of some content.
     pub fn of(content: &Content) -> Self {
         let mut areas = Vec::new();
-        if let Content::Item { item, .. } = content {
-            areas.extend(answers(item));
-            areas.extend(foot());
+        match content {
+            Content::Item { item, .. } => {
+                areas.extend(answers(item));
+                areas.extend(foot());
+            }
+            Content::Pair(..) => {
+                let replies = [("Same", Reply::Same), ("Different", Reply::Different)];
+                let choices =
+                    replies.map(|(words, reply)| (words.to_owned(), Choice::Reply(reply)));
+                areas.extend(row(choices.to_vec()));
+                // A reply cannot be taken back or left out: the next pair depends on it.
+                areas.extend(
+                    foot()
+                        .into_iter()
+                        .filter(|area| area.choice == Choice::Stop),
+                );
+            }
+            Content::Words(_) => {}
         }
         Self { areas }
     }
@@ -88,12 +108,15 @@ impl Layout {
 fn answers(item: &Item) -> Vec<Area> {
     match &item.kind {
         Kind::Scale { .. } => {
-            let steps = (1..=SCALE_STEPS).map(|step| (step.to_string(), Answer::Scale(step)));
+            let steps = (1..=SCALE_STEPS).map(|step| {
+                let choice = Choice::Answer(Answer::Scale(step));
+                (step.to_string(), choice)
+            });
             row(steps.collect())
         }
         Kind::YesNo => row(vec![
-            ("Yes".to_owned(), Answer::YesNo(true)),
-            ("No".to_owned(), Answer::YesNo(false)),
+            ("Yes".to_owned(), Choice::Answer(Answer::YesNo(true))),
+            ("No".to_owned(), Choice::Answer(Answer::YesNo(false))),
         ]),
         Kind::Choice { options, .. } => {
             let options = options.iter().map(|option| {
@@ -110,19 +133,14 @@ fn answers(item: &Item) -> Vec<Area> {
     }
 }
 
-fn row(answers: Vec<(String, Answer)>) -> Vec<Area> {
-    let count = answers.len() as f64;
+fn row(choices: Vec<(String, Choice)>) -> Vec<Area> {
+    let count = choices.len() as f64;
     let width = (f64::from(SIZE_PX.x) - 2.0 * MARGIN - GAP * (count - 1.0)) / count;
-    let place = |(number, (words, answer)): (usize, (String, Answer))| {
+    let place = |(number, (words, choice)): (usize, (String, Choice))| {
         let from = DVec2::new(MARGIN + number as f64 * (width + GAP), ANSWERS_TOP);
-        area(
-            from,
-            DVec2::new(width, STEP_HEIGHT),
-            words,
-            Choice::Answer(answer),
-        )
+        area(from, DVec2::new(width, STEP_HEIGHT), words, choice)
     };
-    answers.into_iter().enumerate().map(place).collect()
+    choices.into_iter().enumerate().map(place).collect()
 }
 
 fn columns(answers: Vec<(String, Answer)>) -> Vec<Area> {

@@ -27,6 +27,16 @@ pub fn paint(painter: &mut TextPainter, content: &Content, layout: &Layout) -> R
         let brush = ui.ctx().debug_painter();
         match content {
             Content::Words(words) => text(&brush, words, QUESTION_PX, egui::pos2(MARGIN, 200.0)),
+            Content::Pair(number, count) => {
+                let corner = egui::pos2(MARGIN, 24.0);
+                text(&brush, &format!("{number} of {count}"), SMALL_PX, corner);
+                let words = "Did the last two throws feel the same, or different?";
+                text(&brush, words, QUESTION_PX, egui::pos2(MARGIN, 64.0));
+                layout
+                    .areas
+                    .iter()
+                    .for_each(|area| draw(&brush, area, None));
+            }
             Content::Item {
                 item,
                 position: (number, count),

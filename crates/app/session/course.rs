@@ -4,6 +4,8 @@ use anyhow::{Context, Result};
 use experiment::plan::{Button as Colour, SessionRules};
 use experiment::protocol::{AnsweredIn, Happening, Note, Place, Protocol, Who};
 use experiment::questionnaire::{Act, Form, Logged, Questionnaire};
+use experiment::record::{Compared, Pairs};
+use experiment::staircase::{Reply, Staircase, StaircasePlan, Trial};
 use game::{Button, EventKind};
 
 use crate::journal::Story;
@@ -17,6 +19,8 @@ pub struct Plan {
     pub first: Colour,
     /// What is asked.
     pub questionnaire: Questionnaire,
+    /// Pairs of throws instead of games, and their seed.
+    pub staircase: Option<(StaircasePlan, u64)>,
 }
 
 /// The course of a session under way.
@@ -26,6 +30,20 @@ pub struct Course {
     protocol: Protocol,
     form: Option<Form>,
     is_in_game: bool,
+    staircase: Option<Staircase>,
+    /// What was said of the pairs.
+    compared: Vec<Compared>,
+}
+
+/// A throw of a pair, and the value that it is made with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Throw {
+    /// Number of the pair, from 1.
+    pub pair: u32,
+    /// Throw of the pair, 1 or 2.
+    pub throw: u8,
+    /// The parameter.
+    pub value: f64,
 }
 
 /// A button as the plan calls it.
@@ -46,16 +64,28 @@ pub fn button(colour: Colour) -> Button {
 
 impl Course {
     /// From its beginning.
-    pub fn new(plan: Plan) -> Self {
-        let protocol = Protocol::new(plan.rules.clone(), plan.first, &plan.questionnaire);
+    ///
+    /// # Errors
+    /// When the plan's staircase cannot be run.
+    pub fn new(plan: Plan) -> Result<Self> {
+        let mut protocol = Protocol::new(plan.rules.clone(), plan.first, &plan.questionnaire);
+        let staircase = match &plan.staircase {
+            Some((staircase, seed)) => {
+                protocol = protocol.comparing(staircase.trials);
+                Some(Staircase::new(staircase, *seed)?)
+            }
+            None => None,
+        };
         let mut course = Self {
             plan,
             protocol,
             form: None,
             is_in_game: false,
+            staircase,
+            compared: Vec::new(),
         };
         course.lay_out();
-        course
+        Ok(course)
     }
 
     /// Tells it what the journals of a session that was broken off have of it.
@@ -95,7 +125,20 @@ impl Course {
             Note::Stopped { .. } => {
                 self.happen(Happening::Stop);
             }
-            Note::Consent(_) | Note::Reached { .. } | Note::Remark { .. } | Note::Clock { .. } => {}
+            Note::Reply {
+                reply,
+                answered_in,
+                at_s,
+                ..
+            } => {
+                self.compare(at_s, reply, answered_in)
+                    .context("the journal's replies do not fit the study's plan")?;
+            }
+            Note::Consent(_)
+            | Note::Reached { .. }
+            | Note::Remark { .. }
+            | Note::Clock { .. }
+            | Note::Throw { .. } => {}
         }
         Ok(())
     }
@@ -108,6 +151,11 @@ impl Course {
     /// The form that is to be filled in.
     pub fn form(&self) -> Option<&Form> {
         self.form.as_ref()
+    }
+
+    /// What is compared, in a study of differences.
+    pub fn staircase_plan(&self) -> Option<&StaircasePlan> {
+        self.plan.staircase.as_ref().map(|(plan, _)| plan)
     }
 
     /// From which answer about sickness on ending the session is advised.
@@ -162,6 +210,67 @@ impl Course {
         Ok((note, reached))
     }
 
+    /// The throw that is to be made now, in a study of differences.
+    pub fn throw(&self) -> Option<Throw> {
+        let Place::Pair { number, throw } = self.protocol.place() else {
+            return None;
+        };
+        let trial = self.staircase.as_ref()?.open_trial()?;
+        Some(Throw {
+            pair: number,
+            throw,
+            value: if throw == 1 {
+                trial.first
+            } else {
+                trial.second
+            },
+        })
+    }
+
+    /// The pair that is to be compared now, as a part of the range, for a participant that is a program.
+    pub fn trial(&self) -> Option<Trial> {
+        let Place::Comparing(_) = self.protocol.place() else {
+            return None;
+        };
+        self.staircase.as_ref()?.open_trial()
+    }
+
+    /// Takes what was said of the pair, as [`Course::act`] takes answers.
+    ///
+    /// # Errors
+    /// When no pair is to be compared; nothing has changed then.
+    pub fn compare(
+        &mut self,
+        at_s: f64,
+        reply: Reply,
+        answered_in: AnsweredIn,
+    ) -> Result<(Note, Option<Place>)> {
+        let trial = self.trial().context("no pair is to be compared now")?;
+        let staircase = self.staircase.as_mut();
+        staircase.context("the plan has no pairs")?.reply(reply)?;
+        self.compared.push(Compared {
+            trial,
+            reply,
+            at_s,
+            answered_in,
+        });
+        let note = Note::Reply {
+            pair: trial.number,
+            reply,
+            answered_in,
+            at_s,
+        };
+        Ok((note, self.happen(Happening::Compared)))
+    }
+
+    /// The pairs so far, in a study of differences.
+    pub fn pairs(&self) -> Option<Pairs> {
+        Some(Pairs {
+            compared: self.compared.clone(),
+            estimate: self.staircase.as_ref()?.estimate(),
+        })
+    }
+
     /// The participant was told what the study is about.
     pub fn debriefed(&mut self) -> Option<Place> {
         self.happen(Happening::Debriefed)
@@ -184,8 +293,16 @@ impl Course {
         Some(place)
     }
 
-    /// Takes out the form that is due.
+    /// Takes out the form, or draws the pair, that is due.
     fn lay_out(&mut self) {
+        if let Place::Pair { throw: 1, .. } = self.protocol.place()
+            && let Some(staircase) = &mut self.staircase
+            && staircase.open_trial().is_none()
+        {
+            staircase
+                .next_trial()
+                .expect("the last pair has its reply, or this place is not reached");
+        }
         self.form = match self.protocol.place() {
             Place::Form(stage) => Some(Form::new(
                 &self.plan.questionnaire,

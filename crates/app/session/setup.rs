@@ -45,7 +45,10 @@ impl Keep {
         let first = seat.plan.first;
         let games = [first, first.other()].map(course::button);
         let events = seat.before.iter().flat_map(|(_, story)| &story.events);
-        let (mut begun, mut training) = (0, seat.plan.rules.training_throws);
+        let mut begun = 0;
+        let mut training = seat.plan.rules.training_throws;
+        let pairs = seat.plan.staircase.as_ref().map(|(plan, _)| plan.trials);
+        training += 2 * pairs.unwrap_or(0);
         for (_, event) in events {
             match event["event"].as_str() {
                 Some("game_started") => begun += 1,
@@ -54,6 +57,7 @@ impl Keep {
             }
         }
         match begun {
+            _ if pairs.is_some() => (Vec::new(), training),
             0 => (games.to_vec(), training),
             _ => (games[games.len().min(begun)..].to_vec(), 0),
         }

@@ -6,6 +6,7 @@ use std::time::Instant;
 use anyhow::Result;
 use experiment::protocol::{AnsweredIn, Part, Place, Who};
 use experiment::questionnaire::{Act, Answer, AnswerError, Item, Kind, SCALE_STEPS};
+use experiment::staircase::Reply;
 
 use crate::session::Session;
 
@@ -49,6 +50,7 @@ pub fn due(session: &Session) -> Option<String> {
     let step = course.protocol().next_step();
     Some(match course.protocol().place() {
         Place::Debriefing => format!("{step}; Enter when done"),
+        Place::Comparing(_) => format!("{step}\n  same or different"),
         _ => step,
     })
 }
@@ -95,6 +97,8 @@ pub fn take(line: &str, session: &mut Session) -> Result<Option<String>> {
             session.remark(words.to_owned())?;
             Ok(Some("The remark is kept.".to_owned()))
         }
+        // It is stopped once.
+        "/stop" if session.is_over() => Ok(None),
         "/stop" => session
             .stop(Who::Experimenter, words.to_owned())
             .map(|()| None),
@@ -108,6 +112,7 @@ fn answer(line: &str, session: &mut Session) -> Result<Option<String>> {
     let Some(item) = session.form().and_then(|form| form.current()).cloned() else {
         let place = session.course().map(|course| course.protocol().place());
         return match place {
+            Some(Place::Comparing(_)) => compare(line, session),
             Some(Place::Debriefing) if line.is_empty() => session.debriefed().map(|()| None),
             _ if line.is_empty() => Ok(None),
             _ => Ok(Some(
@@ -130,6 +135,16 @@ fn answer(line: &str, session: &mut Session) -> Result<Option<String>> {
         Err(error) if error.is::<AnswerError>() => Ok(Some(format!("{error}."))),
         Err(error) => Err(error),
     }
+}
+
+/// Takes what is said of a pair of throws.
+fn compare(line: &str, session: &mut Session) -> Result<Option<String>> {
+    let reply = match line.to_lowercase().as_str() {
+        "s" | "same" => Reply::Same,
+        "d" | "different" => Reply::Different,
+        _ => return Ok(Some("Type `same` or `different`.".to_owned())),
+    };
+    session.compare(reply, AnsweredIn::Desk).map(|()| None)
 }
 
 /// The act that a line means for an item.

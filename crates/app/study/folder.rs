@@ -6,11 +6,12 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use experiment::protocol::{Place, Protocol};
+use experiment::record::Pairs;
 use experiment::study::{ParticipantId, Study};
 use game::Game;
 
 use super::seat;
-use crate::journal::{self, Continues, Story};
+use crate::journal::{self, Changes, Continues, Story};
 use crate::session::course::Course;
 
 /// Every participant has one session.
@@ -46,6 +47,8 @@ pub struct Progress {
     pub path: PathBuf,
     /// Where it is.
     pub protocol: Protocol,
+    /// Its pairs of throws, in a study of differences.
+    pub pairs: Option<Pairs>,
 }
 
 /// Whether a program lived long enough to write the journal's header and, where it is a session's first, the consent.
@@ -90,7 +93,7 @@ pub fn progress(study: &Study, participant: &ParticipantId) -> Result<Option<Pro
     };
     let story = journal::read_open(&path)?;
     let slot = study.slot_of(participant)?;
-    let mut course = Course::new(seat::plan(study, slot));
+    let mut course = Course::new(seat::plan(study, slot))?;
     course
         .catch_up(&story)
         .with_context(|| path.display().to_string())?;
@@ -98,6 +101,7 @@ pub fn progress(study: &Study, participant: &ParticipantId) -> Result<Option<Pro
         story,
         path,
         protocol: course.protocol().clone(),
+        pairs: course.pairs(),
     }))
 }
 
@@ -125,7 +129,12 @@ impl Progress {
         let conditions = journal::settings::of(&self.path, &self.story.header)?;
         let mut game = Game::new(conditions, self.story.header.frames)
             .context("cannot set up the recorded alley")?;
-        self.story.inputs.iter().for_each(|input| game.step(input));
+        let changes = Changes::of(&self.path, &self.story.header, &self.story.notes)?;
+        for (index, input) in self.story.inputs.iter().enumerate() {
+            changes.before(index, &mut game)?;
+            game.step(input);
+        }
+        self.story.notes = journal::kept(self.story.notes, count);
         let continues = Continues {
             journal: file_name(&self.path)?,
             inputs: count as u64,
@@ -172,6 +181,7 @@ pub fn place_text(place: Place) -> String {
         Place::Training { .. } => "in the training throws".to_owned(),
         Place::Waiting(game) => format!("before game {game}"),
         Place::Playing(game) => format!("in game {game}"),
+        Place::Pair { number, .. } | Place::Comparing(number) => format!("at pair {number}"),
         Place::Debriefing => "before the debriefing".to_owned(),
         Place::Complete => "complete".to_owned(),
         Place::Stopped => "stopped".to_owned(),

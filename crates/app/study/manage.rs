@@ -6,13 +6,16 @@ use anyhow::{Result, bail};
 use experiment::consent::ConsentForm;
 use experiment::files;
 use experiment::plan::{About, Balance, Plan, Scheme, SessionRules, balance};
+use experiment::record::Pairs;
+use experiment::staircase::{Rule, StaircasePlan};
 use experiment::study::{ParticipantId, Study};
 use experiment::tables::{Export, Format};
 
 use super::folder::{self, place_text};
-use super::{entropy, tables, utc_now};
+use super::{entropy, seat, tables, utc_now};
 use crate::args::{
-    EraseArguments, ExportArguments, NewStudyArguments, PlanArguments, UnblindArguments,
+    EraseArguments, ExportArguments, NewStudyArguments, PlanArguments, RuleChoice,
+    UnblindArguments, unusable,
 };
 
 /// Makes a study.
@@ -38,6 +41,7 @@ pub fn new(arguments: &NewStudyArguments, root: &Path) -> Result<()> {
         about,
         [&questionnaire, &consent],
         entropy(),
+        root,
     )?;
     print!("{}", balance(&study.plan().design(), study.rows()));
     let unfilled = study.consent_form().unfilled();
@@ -60,6 +64,7 @@ pub fn create(
     about: About,
     texts: [&Path; 2],
     entropy: u64,
+    root: &Path,
 ) -> Result<Study> {
     let rules = SessionRules {
         frames_per_game: arguments.frames,
@@ -69,7 +74,7 @@ pub fn create(
         undue_presses_allowed: arguments.allow_undue_presses,
         ..SessionRules::default()
     };
-    let scheme = Scheme::named(&arguments.scheme);
+    let scheme = scheme(arguments, root)?;
     let [questionnaire, consent] = texts;
     let form = ConsentForm::read(consent)?.filled(&[
         ("laboratory", &about.laboratory),
@@ -87,6 +92,39 @@ pub fn create(
         &form.text,
         entropy,
     )?)
+}
+
+/// The scheme that is asked for; a staircase is tried out.
+fn scheme(arguments: &PlanArguments, root: &Path) -> Result<Scheme> {
+    let asked = &arguments.staircase;
+    let values = (&asked.parameter, asked.standard, asked.furthest);
+    if arguments.scheme != "staircase" {
+        if values != (&None, None, None) {
+            bail!(unusable(
+                "--parameter, --standard and --furthest belong to --scheme staircase"
+            ));
+        }
+        return Ok(Scheme::named(&arguments.scheme));
+    }
+    let (Some(key), Some(standard), Some(furthest)) = values else {
+        bail!(unusable(
+            "--scheme staircase needs --parameter, --standard and --furthest, as objects.elasticity, 1.0 and 0.5"
+        ));
+    };
+    let plan = StaircasePlan {
+        key: key.clone(),
+        standard,
+        furthest,
+        rule: match asked.rule {
+            RuleChoice::OneUpTwoDown => Rule::OneUpTwoDown,
+            RuleChoice::Bayesian => Rule::Bayesian,
+        },
+        trials: asked.pairs,
+        catch_share: asked.catch_share,
+    };
+    plan.check()?;
+    seat::check_staircase(&plan, root)?;
+    Ok(Scheme::Staircase(plan))
 }
 
 /// Prints the balance of a study's allocation.
@@ -130,7 +168,10 @@ pub fn status(folder: &Path) -> Result<()> {
                 } else {
                     ""
                 };
-                format!("{place}{open}{torn}")
+                let pairs = progress
+                    .pairs
+                    .map_or(String::new(), |pairs| estimate(&pairs));
+                format!("{place}{open}{pairs}{torn}")
             }
             Err(error) => {
                 damaged += 1;
@@ -145,6 +186,19 @@ pub fn status(folder: &Path) -> Result<()> {
         );
     }
     Ok(())
+}
+
+/// What pairs of throws have come to.
+fn estimate(pairs: &Pairs) -> String {
+    let count = pairs.compared.len();
+    let Some(estimate) = pairs.estimate else {
+        return format!("; {count} pairs, which do not tell the threshold yet");
+    };
+    let [low, high] = estimate.interval;
+    format!(
+        "; threshold {:.4} ({low:.4} to {high:.4}) from {count} pairs, {} of {} without a difference called different",
+        estimate.threshold, estimate.false_alarms, estimate.catches
+    )
 }
 
 /// Shows the allocation, after it was written down who looks.

@@ -1,24 +1,30 @@
 //! Writes down what happens while a session is played again.
 
+mod device;
+
+use std::collections::VecDeque;
+
 use anyhow::{Context, Result};
 use experiment::plan::Button as Colour;
 use experiment::protocol::{AnsweredIn, Note};
 use experiment::questionnaire::{Form, Logged, Stage};
-use experiment::record::{
-    EventRow, FilledForm, MotionRow, Provenance, Run, SessionRecord, Status, TrialType,
-};
+use experiment::record::{EventRow, FilledForm, MotionRow, Run, SessionRecord, Status, TrialType};
 use experiment::study::{ParticipantId, Study};
 use game::{EventKind, Game, Model, TrackedPart};
 use physics::Pose;
 
 use super::approaches::Approaches;
 use super::folder::Progress;
+use crate::journal::Story;
 use crate::output;
 use crate::session::course::colour;
 
 /// A session as rows, while it is played again.
 pub struct Scribe {
     rate_hz: f64,
+    /// When the game waited for its device: after how many inputs, and how long [s].
+    pauses: VecDeque<(usize, Option<f64>)>,
+    frames: usize,
     runs: Vec<Run>,
     /// What happened before the first game, by time since the session began.
     training: Vec<EventRow>,
@@ -33,10 +39,12 @@ pub struct Scribe {
 }
 
 impl Scribe {
-    /// Of a session with `rate_hz` pictures per second.
-    pub fn new(rate_hz: f64) -> Self {
+    /// Of a session that a journal tells.
+    pub fn new(story: &Story) -> Self {
         Self {
-            rate_hz,
+            rate_hz: device::provenance(&story.header, &story.device).refresh_hz,
+            pauses: device::pauses(&story.device).into(),
+            frames: 0,
             runs: Vec::new(),
             training: Vec::new(),
             run_began: None,
@@ -51,6 +59,12 @@ impl Scribe {
     pub fn frame(&mut self, game: &Game) {
         for event in game.events() {
             self.event(game, &event.kind);
+        }
+        self.frames += 1;
+        let frames = self.frames;
+        while let Some((_, seconds)) = self.pauses.pop_front_if(|(at, _)| *at <= frames) {
+            let pause = device::pause(game.time(), seconds);
+            self.put(pause);
         }
         if let (Some(began), Some(run)) = (self.run_began, self.runs.last_mut()) {
             self.approaches.frame(game);
@@ -154,6 +168,10 @@ impl Scribe {
     fn row(&mut self, at: f64, kind: TrialType, fill: impl FnOnce(&mut EventRow)) {
         let mut row = EventRow::new(at, kind);
         fill(&mut row);
+        self.put(row);
+    }
+
+    fn put(&mut self, row: EventRow) {
         match self.runs.last_mut() {
             Some(run) => run.events.push(row),
             None => self.training.push(row),
@@ -201,15 +219,8 @@ impl Scribe {
             consent,
             forms: forms(study, &notes)?,
             runs: self.runs,
-            provenance: Provenance {
-                version: header.program.clone(),
-                commit: header.commit.clone(),
-                seed: header.seed,
-                device: header.device.clone(),
-                refresh_hz: header.rate_hz,
-                settings_digest: header.settings_digest.clone().unwrap_or_default(),
-                ..Provenance::default()
-            },
+            pairs: progress.pairs.clone(),
+            provenance: device::provenance(header, &progress.story.device),
             began,
             immersed_s: played_s,
         })

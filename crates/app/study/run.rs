@@ -9,6 +9,7 @@ use experiment::consent::{Consent, TICKS, Ticks};
 use experiment::participant::{Model, Simulated};
 use experiment::protocol::Note;
 use experiment::random::SplitMix64;
+use experiment::staircase::Observer;
 use experiment::study::{Lock, ParticipantId, Study};
 
 use super::attendant::Attendant;
@@ -154,7 +155,7 @@ fn sit(study: &Study, lock: &Lock, guest: Guest, choice: Choice, root: &Path) ->
     let (slot, seed) = (guest.slot, guest.seed);
     let setup = seat::setup(study, lock, guest, root)?;
     let attendant = if is_script(choice) {
-        simulated(study, slot, seed)
+        simulated(study, slot, seed, None)
     } else {
         Attendant::Console(Box::new(Console::open()?))
     };
@@ -175,8 +176,8 @@ fn sit(study: &Study, lock: &Lock, guest: Guest, choice: Choice, root: &Path) ->
     Ok(())
 }
 
-/// A simulated participant for `slot`.
-pub fn simulated(study: &Study, slot: u32, seed: u64) -> Attendant {
+/// A simulated participant for `slot`, who calls a difference of `threshold`, in the parameter's unit, different 70.7 % of the time.
+pub fn simulated(study: &Study, slot: u32, seed: u64, threshold: Option<f64>) -> Attendant {
     let person = Simulated::new(
         &Model::TABLE_6,
         study.questionnaire(),
@@ -184,8 +185,22 @@ pub fn simulated(study: &Study, slot: u32, seed: u64) -> Attendant {
         study.row(slot),
         seed,
     );
-    Attendant::Simulated(Box::new(person))
+    let range = study
+        .plan()
+        .staircase
+        .as_ref()
+        .map_or(1.0, |plan| (plan.furthest - plan.standard).abs());
+    let observer = Observer {
+        target: threshold.map_or(USUAL_TARGET, |threshold| threshold / range),
+        false_alarms: USUAL_FALSE_ALARMS,
+    };
+    Attendant::simulated(person, observer, seed)
 }
+
+/// What a simulated participant tells apart where nobody says, as a part of the range.
+const USUAL_TARGET: f64 = 0.25;
+/// How often one calls two equal throws different.
+const USUAL_FALSE_ALARMS: f64 = 0.08;
 
 /// A scripted participant plays a session through as fast as the machine can; it is not yet finished.
 ///
@@ -203,7 +218,11 @@ pub fn bowl(setup: Setup, mut attendant: Attendant, stop: &AtomicBool) -> Result
         if session.is_over() {
             break;
         }
-        let input = script.next(session.game());
+        let input = if session.is_asking() {
+            script.wait(session.game())
+        } else {
+            script.next(session.game())
+        };
         session.frame(input)?;
         if session.game().time() > longest {
             bail!(

@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use experiment::plan::Button as Colour;
 use experiment::protocol::Note;
+use experiment::random::SplitMix64;
+use experiment::staircase::StaircasePlan;
 use experiment::study::{Lock, ParticipantId, Study};
-use game::{Conditions, Config};
+use game::{Conditions, Config, Game};
 
 use super::folder::{self, SESSION};
 use crate::journal::{Continues, Story};
@@ -24,7 +26,58 @@ pub fn plan(study: &Study, slot: u32) -> course::Plan {
         rules: study.plan().session.clone(),
         first: study.row(slot).button(1),
         questionnaire: study.questionnaire().clone(),
+        staircase: study
+            .plan()
+            .staircase
+            .clone()
+            .map(|plan| (plan, staircase_seed(study, slot))),
     }
+}
+
+/// Seed of the pairs of throws in `slot`: not that of the participant who is simulated there.
+pub fn staircase_seed(study: &Study, slot: u32) -> u64 {
+    SplitMix64::for_index(!study.plan().seed, u64::from(slot)).next_u64()
+}
+
+/// Settings in which the number at `key` is `value`.
+///
+/// # Errors
+/// When there is no such number, or it cannot have this value.
+pub fn with_value(config: &Config, key: &str, value: f64) -> Result<Config> {
+    let mut tree = serde_json::to_value(config)?;
+    let place = format!("/{}", key.replace('.', "/"));
+    let number = tree
+        .pointer_mut(&place)
+        .filter(|found| found.is_number())
+        .with_context(|| {
+            format!("{key} is no number of config/default.toml: name one, like objects.elasticity")
+        })?;
+    // What is counted stays a whole number.
+    *number = if number.is_f64() {
+        value.into()
+    } else {
+        (value.round() as i64).into()
+    };
+    let config: Config = serde_json::from_value(tree)
+        .with_context(|| format!("{key} = {value} is no value of this setting"))?;
+    config.check()?;
+    Ok(config)
+}
+
+/// Whether both ends of a study of differences can be played.
+///
+/// # Errors
+/// One sentence when they cannot.
+pub fn check_staircase(plan: &StaircasePlan, root: &Path) -> Result<()> {
+    let base = Config::load(&root.join("config"), SCENE, None, &[NO_REPLAY.to_owned()])?;
+    let end = |value| with_value(&base, &plan.key, value);
+    let conditions = Conditions {
+        lobby: end(plan.standard)?,
+        red: end(plan.furthest)?,
+        blue: end(plan.furthest)?,
+    };
+    Game::new(conditions, 1).with_context(|| format!("{} cannot be compared", plan.key))?;
+    Ok(())
 }
 
 /// The settings of the session in `slot`: what Red and Blue stand for, and the room before the first game.
@@ -32,6 +85,15 @@ pub fn plan(study: &Study, slot: u32) -> course::Plan {
 /// # Errors
 /// When the configuration cannot be read, or the plan sets what it does not have.
 pub fn conditions(study: &Study, slot: u32, root: &Path) -> Result<Conditions> {
+    if let Some(plan) = &study.plan().staircase {
+        let base = Config::load(&root.join("config"), SCENE, None, &[NO_REPLAY.to_owned()])?;
+        let standard = with_value(&base, &plan.key, plan.standard)?;
+        return Ok(Conditions {
+            lobby: standard.clone(),
+            red: standard.clone(),
+            blue: standard,
+        });
+    }
     let row = study.row(slot);
     let design = study.plan().design();
     let load = |colour: Option<Colour>| {

@@ -46,13 +46,24 @@ pub fn simulate(arguments: &SimulateArguments, root: &Path) -> Result<()> {
         about,
         [&texts[0], &texts[1]],
         random.next_u64(),
+        root,
     )?;
     let lock = study.lock()?;
     let seats: Vec<Assignment> = (0..arguments.plan.subjects)
         .map(|_| study.admit(&lock, random.next_u64()))
         .collect::<Result<_, _>>()?;
     let progress = bar(seats.len());
-    let outcome = play_all(&study, &lock, &seats, root, &stop, &progress);
+    let play = |assignment: &Assignment, registers: &Mutex<&Lock>| {
+        play_one(
+            &study,
+            registers,
+            assignment,
+            arguments.threshold,
+            root,
+            &stop,
+        )
+    };
+    let outcome = play_all(&lock, &seats, play, &stop, &progress);
     progress.finish_and_clear();
     outcome?;
     if stop.load(Ordering::Relaxed) {
@@ -80,10 +91,9 @@ fn bar(count: usize) -> ProgressBar {
 
 /// Plays every session, as many at a time as there are cores; the first failure ends it.
 fn play_all(
-    study: &Study,
     lock: &Lock,
     seats: &[Assignment],
-    root: &Path,
+    play: impl Fn(&Assignment, &Mutex<&Lock>) -> Result<()> + Sync,
     stop: &AtomicBool,
     progress: &ProgressBar,
 ) -> Result<()> {
@@ -99,7 +109,7 @@ fn play_all(
             if failed || stop.load(Ordering::Relaxed) {
                 return;
             }
-            match play_one(study, &registers, assignment, root, stop) {
+            match play(assignment, &registers) {
                 Ok(()) => progress.inc(1),
                 Err(error) => {
                     let mut failure = failure.lock().unwrap_or_else(PoisonError::into_inner);
@@ -124,6 +134,7 @@ fn play_one(
     study: &Study,
     registers: &Mutex<&Lock>,
     assignment: &Assignment,
+    threshold: Option<f64>,
     root: &Path,
     stop: &AtomicBool,
 ) -> Result<()> {
@@ -143,7 +154,7 @@ fn play_one(
         study.record_consent(*lock, &assignment.participant, &consent)?;
         seat::setup(study, *lock, guest, root)?
     };
-    let attendant = simulated(study, slot, seed(study, slot));
+    let attendant = simulated(study, slot, seed(study, slot), threshold);
     let session = bowl(setup, attendant, stop)?;
     session.finish(None, Wanted { video: false }, &mut |_| ())?;
     Ok(())

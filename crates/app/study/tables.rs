@@ -12,7 +12,7 @@ use game::Game;
 
 use super::folder::{self, Progress, SESSION};
 use super::record::Scribe;
-use crate::journal;
+use crate::journal::{self, Changes};
 
 /// Makes every table of a study anew.
 ///
@@ -113,8 +113,10 @@ fn played_again(
     let conditions = journal::settings::of(&progress.path, &story.header)?;
     let mut game =
         Game::new(conditions, story.header.frames).context("cannot set up the recorded alley")?;
-    let mut scribe = Scribe::new(story.header.rate_hz);
-    for input in &story.inputs {
+    let mut scribe = Scribe::new(story);
+    let changes = Changes::of(&progress.path, &story.header, &story.notes)?;
+    for (index, input) in story.inputs.iter().enumerate() {
+        changes.before(index, &mut game)?;
         game.step(input);
         scribe.frame(&game);
     }

@@ -112,6 +112,7 @@ fn session(
         consent,
         forms,
         runs: (1..=2).map(|game| run(game, row.button(game))).collect(),
+        pairs: None,
         provenance: Provenance {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             commit: "unknown".to_owned(),

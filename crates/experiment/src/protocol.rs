@@ -4,15 +4,16 @@
 //! experimenter does next. It knows no condition, only Red and Blue. Fed with the same happenings it is in the same place, so
 //! that a session that was broken off is taken up from its journal.
 
+mod note;
 mod outline;
 
 use serde::{Deserialize, Serialize};
 
+pub use note::{AnsweredIn, Note, Who};
 pub use outline::{Part, Standing};
 
-use crate::consent::Consent;
 use crate::plan::{Button, SessionRules};
-use crate::questionnaire::{Logged, Questionnaire, Stage};
+use crate::questionnaire::{Questionnaire, Stage};
 
 /// Where a session is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -29,6 +30,15 @@ pub enum Place {
     Waiting(u8),
     /// Game 1 or 2 is played.
     Playing(u8),
+    /// In a study of differences: a throw of a pair is to be made.
+    Pair {
+        /// Number of the pair, from 1.
+        number: u32,
+        /// Throw of the pair, 1 or 2.
+        throw: u8,
+    },
+    /// The participant says whether the throws of this pair were the same.
+    Comparing(u32),
     /// The participant is told what the study is about.
     Debriefing,
     /// Everything is done.
@@ -48,79 +58,12 @@ pub enum Happening {
     GameOver,
     /// The form that was due has been filled in.
     FormDone,
+    /// The participant said whether a pair of throws was the same.
+    Compared,
     /// The participant was told what the study is about.
     Debriefed,
     /// Somebody stopped the session.
     Stop,
-}
-
-/// Who stopped a session.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Who {
-    /// The participant.
-    Participant,
-    /// The experimenter.
-    Experimenter,
-}
-
-/// Where a form was filled in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum AnsweredIn {
-    /// On the panel in the room.
-    Headset,
-    /// In a window or a terminal.
-    Desk,
-    /// By a simulated participant.
-    Script,
-}
-
-/// What the experiment notes in the journal.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "note", rename_all = "snake_case")]
-pub enum Note {
-    /// The gate was passed.
-    Consent(Consent),
-    /// The session reached a place.
-    Reached {
-        /// Which.
-        place: Place,
-        /// Since the session began [s].
-        at_s: f64,
-    },
-    /// One act at a form.
-    Form {
-        /// Which form.
-        form: Stage,
-        /// What was done.
-        act: Logged,
-        /// Where.
-        answered_in: AnsweredIn,
-    },
-    /// A remark of the experimenter; it may identify somebody.
-    Remark {
-        /// The words.
-        text: String,
-        /// Since the session began [s].
-        at_s: f64,
-    },
-    /// The session was stopped.
-    Stopped {
-        /// By whom.
-        by: Who,
-        /// Why.
-        reason: String,
-        /// Since the session began [s].
-        at_s: f64,
-    },
-    /// The program was begun or begun again.
-    Clock {
-        /// Coordinated Universal Time, `YYYY-MM-DDThh:mm:ssZ`.
-        utc: String,
-        /// Since the session began [s].
-        at_s: f64,
-    },
 }
 
 /// A session's course.
@@ -128,6 +71,8 @@ pub enum Note {
 pub struct Protocol {
     rules: SessionRules,
     first: Button,
+    /// Pairs of throws that take the place of the games, in a study of differences.
+    pairs: Option<u32>,
     /// Forms that ask something.
     forms: Vec<Stage>,
     place: Place,
@@ -162,11 +107,21 @@ impl Protocol {
             forms: all.into_iter().filter(asks).collect(),
             rules,
             first,
+            pairs: None,
             place: Place::Form(Stage::Before),
             played: Vec::new(),
         };
         protocol.place = protocol.form_or(Stage::Before, protocol.training());
         protocol
+    }
+
+    /// The same session with pairs of throws instead of games; what is asked after games is not asked then.
+    #[must_use]
+    pub fn comparing(mut self, pairs: u32) -> Self {
+        self.pairs = Some(pairs);
+        self.forms.retain(|stage| *stage == Stage::Before);
+        self.place = self.form_or(Stage::Before, self.training());
+        self
     }
 
     /// Where the session is.
@@ -183,7 +138,7 @@ impl Protocol {
     pub fn is_played(&self) -> bool {
         matches!(
             self.place,
-            Place::Training { .. } | Place::Waiting(_) | Place::Playing(_)
+            Place::Training { .. } | Place::Waiting(_) | Place::Playing(_) | Place::Pair { .. }
         )
     }
 
@@ -213,14 +168,28 @@ impl Protocol {
     /// # Errors
     /// When `happening` has no place here; the protocol is then as before.
     pub fn happen(&mut self, happening: Happening) -> Result<Place, Unfit> {
-        use Happening::{Debriefed, FormDone, GameOver, GameStarted, PracticeThrow, Stop};
+        use Happening::{
+            Compared, Debriefed, FormDone, GameOver, GameStarted, PracticeThrow, Stop,
+        };
         self.place = match (self.place, happening) {
             (Place::Complete | Place::Stopped, Stop) => self.place,
             (_, Stop) => Place::Stopped,
-            (Place::Training { left: 0 | 1 }, PracticeThrow) => Place::Waiting(1),
+            (Place::Training { left: 0 | 1 }, PracticeThrow) => self.trained(),
             (Place::Training { left }, PracticeThrow) => Place::Training { left: left - 1 },
             // Whoever waits may throw; nothing counts.
-            (Place::Waiting(_) | Place::Form(_) | Place::Debriefing, PracticeThrow) => self.place,
+            (
+                Place::Waiting(_) | Place::Form(_) | Place::Comparing(_) | Place::Debriefing,
+                PracticeThrow,
+            ) => self.place,
+            (Place::Pair { number, throw: 1 }, PracticeThrow) => Place::Pair { number, throw: 2 },
+            (Place::Pair { number, .. }, PracticeThrow) => Place::Comparing(number),
+            (Place::Comparing(number), Compared) if Some(number) == self.pairs => {
+                self.after_games()
+            }
+            (Place::Comparing(number), Compared) => Place::Pair {
+                number: number + 1,
+                throw: 1,
+            },
             (Place::Waiting(game), GameStarted(button)) => {
                 self.played.push(button);
                 Place::Playing(game)
@@ -256,6 +225,17 @@ impl Protocol {
                 format!("Game {game}: the participant presses {button}")
             }
             Place::Playing(game) => format!("Game {game} is played"),
+            Place::Pair { number, throw } => {
+                let (of, throw) = (
+                    self.pairs.unwrap_or(number),
+                    ["first", "second"][usize::from(throw > 1)],
+                );
+                format!("Pair {number} of {of}: the {throw} throw")
+            }
+            Place::Comparing(number) => {
+                let of = self.pairs.unwrap_or(number);
+                format!("Pair {number} of {of}: did the two throws feel the same or different?")
+            }
             Place::Debriefing => "Tell the participant what the study is about".to_owned(),
             Place::Complete => "The session is complete".to_owned(),
             Place::Stopped => "The session was stopped".to_owned(),
@@ -264,8 +244,19 @@ impl Protocol {
 
     fn training(&self) -> Place {
         match self.rules.training_throws {
-            0 => Place::Waiting(1),
+            0 => self.trained(),
             left => Place::Training { left },
+        }
+    }
+
+    /// What comes behind the training.
+    fn trained(&self) -> Place {
+        match self.pairs {
+            Some(_) => Place::Pair {
+                number: 1,
+                throw: 1,
+            },
+            None => Place::Waiting(1),
         }
     }
 
@@ -342,6 +333,54 @@ mod tests {
         protocol.happen(Happening::FormDone).unwrap();
         // Whatever was first: the other one is due now.
         assert_eq!(protocol.due(), Some(Button::Blue));
+    }
+
+    #[test]
+    fn pairs_take_the_place_of_games_and_no_button_is_free() {
+        let mut protocol = protocol(SessionRules {
+            training_throws: 1,
+            ..SessionRules::default()
+        })
+        .comparing(2);
+        let mut places = Vec::new();
+        let happenings = [
+            Happening::FormDone,
+            Happening::PracticeThrow,
+            Happening::PracticeThrow,
+            Happening::PracticeThrow,
+            Happening::Compared,
+            Happening::PracticeThrow,
+            Happening::PracticeThrow,
+            // A throw while the question is asked changes nothing.
+            Happening::PracticeThrow,
+            Happening::Compared,
+            Happening::Debriefed,
+        ];
+        for happening in happenings {
+            assert_eq!(protocol.locked(), [true, true]);
+            assert!(
+                protocol
+                    .happen(Happening::GameStarted(Button::Red))
+                    .is_err()
+            );
+            places.push(protocol.happen(happening).unwrap());
+        }
+        let pair = |number, throw| Place::Pair { number, throw };
+        assert_eq!(
+            places,
+            [
+                Place::Training { left: 1 },
+                pair(1, 1),
+                pair(1, 2),
+                Place::Comparing(1),
+                pair(2, 1),
+                pair(2, 2),
+                Place::Comparing(2),
+                Place::Comparing(2),
+                Place::Debriefing,
+                Place::Complete
+            ]
+        );
     }
 
     #[test]

@@ -4,6 +4,7 @@ use crate::consent::Consent;
 use crate::plan::Button;
 use crate::protocol::AnsweredIn;
 use crate::questionnaire::{Answer, Answers, Stage};
+use crate::staircase::{Estimate, Reply, Trial};
 use crate::study::ParticipantId;
 
 /// A session.
@@ -23,12 +24,36 @@ pub struct SessionRecord {
     pub forms: Vec<FilledForm>,
     /// The games that were begun.
     pub runs: Vec<Run>,
+    /// The pairs of throws that were compared, in a study of differences.
+    pub pairs: Option<Pairs>,
     /// What it was recorded with.
     pub provenance: Provenance,
     /// When it began, UTC, RFC 3339.
     pub began: String,
     /// Time with the headset on, or at the desk [s].
     pub immersed_s: f64,
+}
+
+/// The pairs of throws of a session.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pairs {
+    /// The pairs and what was said of them.
+    pub compared: Vec<Compared>,
+    /// What they came to; `None` as long as they tell nothing.
+    pub estimate: Option<Estimate>,
+}
+
+/// A pair of throws and what was said of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Compared {
+    /// The pair.
+    pub trial: Trial,
+    /// What was said.
+    pub reply: Reply,
+    /// When, since the session began [s].
+    pub at_s: f64,
+    /// Where.
+    pub answered_in: AnsweredIn,
 }
 
 /// How a session ended.

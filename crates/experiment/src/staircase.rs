@@ -6,8 +6,11 @@
 //! difference that is called different 70.7 % of the time, where one-up two-down settles (H. Levitt 1971, *Transformed up-down methods
 //! in psychoacoustics*, J. Acoust. Soc. Am. 49).
 
+mod observer;
 mod posterior;
 mod up_down;
+
+pub use observer::Observer;
 
 use serde::{Deserialize, Serialize};
 
@@ -249,6 +252,11 @@ impl Staircase {
         }
         self.done.push((trial, reply));
         Ok(())
+    }
+
+    /// The trial that waits for its answer.
+    pub fn open_trial(&self) -> Option<Trial> {
+        self.open
     }
 
     /// The trials with their answers.

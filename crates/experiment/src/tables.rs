@@ -7,6 +7,7 @@ mod answers;
 mod export;
 mod layout;
 mod motion;
+mod pairs;
 mod sessions;
 
 use serde_json::{Map, Value, json};

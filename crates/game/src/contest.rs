@@ -1,12 +1,13 @@
 //! Games of bowling: which button's game is played, what the next delivery is, what the sheets say.
 
-use crate::Game;
 use crate::components::PushButton;
 use crate::condition::Button;
+use crate::config::Config;
 use crate::event::EventKind;
 use crate::room::Room;
 use crate::score::{Delivery, Roll, ScoreSheet};
 use crate::throw::Stage;
+use crate::{Game, GameError, differing};
 
 /// A press that waits for its confirmation.
 #[derive(Clone, Copy, Debug)]
@@ -50,15 +51,38 @@ impl Game {
         }
     }
 
-    /// Builds the room of a button's condition and begins a new sheet. What the hand held stays behind in the old room.
+    /// Builds the room of a button's condition and begins a new sheet.
     fn start_game(&mut self, button: Button) {
-        let config = self.conditions.of(button);
+        let room = Room::new(self.conditions.of(button))
+            .expect("every condition's room was built once when the session began");
+        self.enter(room);
+        self.playing = Some(button);
+        *self.sheet_mut(button) = ScoreSheet::new(self.frames);
+        self.record(EventKind::GameStarted { button });
+    }
+
+    /// Lays the alley out anew with `config`, between two inputs: all pins stand, the balls lie on their rack, nothing is in the
+    /// hand, no game is played. Nothing is recorded: who plays the inputs again does the same before the same input.
+    ///
+    /// # Errors
+    /// When something differs that a session has once, or physics refuses a setting; nothing has changed then.
+    pub fn lay_out(&mut self, config: &Config) -> Result<(), GameError> {
+        if let Some(setting) = differing(config, &self.conditions.lobby) {
+            return Err(GameError::DifferingCondition(setting));
+        }
+        let room = Room::new(config)?;
+        self.enter(room);
+        self.playing = None;
+        Ok(())
+    }
+
+    /// Goes on in another room. What the hand held stays behind in the old one.
+    fn enter(&mut self, room: Room) {
         let buttons = self
             .room
             .buttons
             .map(|entity| self.room.get::<PushButton>(entity));
-        self.room = Room::new(config)
-            .expect("every condition's room was built once when the session began");
+        self.room = room;
         // The hand that pressed is still on the button: in the new room it must not press again.
         for (entity, before) in self.room.buttons.into_iter().zip(buttons) {
             let mut button: PushButton = self.room.get(entity);
@@ -69,15 +93,12 @@ impl Game {
             disturbed_since: None,
         };
         self.pending = None;
-        self.playing = Some(button);
-        *self.sheet_mut(button) = ScoreSheet::new(self.frames);
         self.hand.held = None;
         self.hand.let_go = None;
         self.hand.candidate = None;
         // The new room's hand has been nowhere yet: it appears where it is.
         self.hand.before = None;
         self.place_hand();
-        self.record(EventKind::GameStarted { button });
     }
 
     /// Writes a delivery on the sheet; returns whether the next one needs a full rack.

@@ -8,12 +8,13 @@ use serde::{Deserialize, Serialize};
 use super::{Cell, Condition, Design, Factor, Levels, Value};
 use crate::files::{self, FileError};
 use crate::questionnaire::line_of;
+use crate::staircase::StaircasePlan;
 
 /// Most participants in a block: more is a slip of the pen.
 const LARGEST_BLOCK: u32 = 10_000;
 
 /// Where a design comes from.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Scheme {
     /// Table 2: one factor changes, weight 2 where the other two levels agree, 1 where they differ; blocks of 18.
     Table2,
@@ -25,6 +26,8 @@ pub enum Scheme {
     Continuous,
     /// Factors and cells from a TOML file.
     File(PathBuf),
+    /// Pairs of throws instead of games: the two ends of what a staircase tries are one cell; blocks of 1.
+    Staircase(StaircasePlan),
 }
 
 /// Why a design cannot be used.
@@ -102,6 +105,7 @@ impl Scheme {
             Scheme::Full => "full",
             Scheme::Continuous => "continuous",
             Scheme::File(_) => "file",
+            Scheme::Staircase(_) => "staircase",
         }
     }
 
@@ -132,6 +136,7 @@ impl Scheme {
                 cells: edges(|_, _| 1),
             },
             Scheme::File(path) => read(path)?,
+            Scheme::Staircase(plan) => ends(plan),
         })
     }
 }
@@ -154,6 +159,20 @@ fn whole_range() -> Vec<Factor> {
     factors[0].levels = Levels::Range { from: 1.0, to: 0.0 };
     factors[1].levels = Levels::Range { from: 0.0, to: 1.0 };
     factors
+}
+
+/// The standard value against the one that is furthest from it.
+fn ends(plan: &StaircasePlan) -> Design {
+    let values = [plan.standard, plan.furthest].map(Value::Number);
+    let levels = Levels::Fixed(values.to_vec());
+    Design {
+        factors: vec![factor('D', "difference", &plan.key, levels)],
+        cells: vec![Cell {
+            low: Condition(vec![0]),
+            high: Condition(vec![1]),
+            weight: 1,
+        }],
+    }
 }
 
 fn factor(letter: char, name: &str, key: &str, levels: Levels) -> Factor {

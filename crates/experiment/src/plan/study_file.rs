@@ -159,6 +159,12 @@ impl Plan {
         about: About,
         session: SessionRules,
     ) -> Result<(Plan, Vec<Row>), PlanError> {
+        let staircase = match scheme {
+            Scheme::Staircase(plan) => Some(plan.clone()),
+            _ => None,
+        };
+        // Before its ends become a design.
+        staircase.as_ref().map_or(Ok(()), StaircasePlan::check)?;
         let design = scheme.design()?;
         if !(1..=MOST_SUBJECTS).contains(&subjects) {
             return Err(PlanError::Content(format!(
@@ -175,24 +181,12 @@ impl Plan {
             design_sha256: digest::sha256(allocation_csv(&design, &rows).as_bytes()),
             about,
             session,
-            staircase: None,
+            staircase,
             factor,
             cell,
         };
         plan.check()?;
         Ok((plan, rows))
-    }
-
-    /// The plan with trials of a just-noticeable difference.
-    ///
-    /// # Errors
-    /// When they cannot be run.
-    pub fn with_staircase(self, staircase: StaircasePlan) -> Result<Plan, PlanError> {
-        staircase.check()?;
-        Ok(Plan {
-            staircase: Some(staircase),
-            ..self
-        })
     }
 
     /// The factors and cells.
@@ -355,13 +349,18 @@ pub(crate) mod tests {
             trials: 60,
             catch_share: 0.2,
         };
-        let (made, _) = plan(18, 1997, about(), SessionRules::default()).unwrap();
         let broken = StaircasePlan {
             trials: 0,
             ..staircase.clone()
         };
-        assert!(made.clone().with_staircase(broken).is_err());
-        let made = made.with_staircase(staircase).unwrap();
+        let make = |staircase| {
+            let rules = SessionRules::default();
+            Plan::new(&Scheme::Staircase(staircase), 18, 1997, about(), rules)
+        };
+        assert!(make(broken).is_err());
+        let (made, rows) = make(staircase).unwrap();
+        assert_eq!(rows.len(), 18);
+        assert_eq!(made.scheme, "staircase");
         let text = made.to_toml();
         assert!(text.contains("rule = \"bayesian\""), "{text}");
         assert_eq!(Plan::parse(&text, Path::new("study.toml")).unwrap(), made);

@@ -56,6 +56,7 @@ impl Protocol {
         let all = [
             Kind::Form(Stage::Before),
             Kind::Training,
+            Kind::Pairs,
             Kind::Game(1),
             Kind::Form(Stage::AfterGame(1)),
             Kind::Game(2),
@@ -66,7 +67,9 @@ impl Protocol {
         let happens = |kind: &Kind| match kind {
             Kind::Form(stage) => self.forms.contains(stage),
             Kind::Training => self.rules.training_throws > 0,
-            Kind::Game(_) | Kind::Debriefing => true,
+            Kind::Pairs => self.pairs.is_some(),
+            Kind::Game(_) => self.pairs.is_none(),
+            Kind::Debriefing => true,
         };
         all.into_iter().filter(happens).collect()
     }
@@ -80,6 +83,7 @@ impl Protocol {
                 1 => "1 training throw".to_owned(),
                 throws => format!("{throws} training throws"),
             },
+            Kind::Pairs => format!("{} pairs of throws", self.pairs.unwrap_or(0)),
             Kind::Game(game) => format!("Game {game}: {}", self.button(game)),
             Kind::Debriefing => "Debriefing".to_owned(),
         }
@@ -100,6 +104,7 @@ impl Protocol {
 enum Kind {
     Form(Stage),
     Training,
+    Pairs,
     Game(u8),
     Debriefing,
 }
@@ -111,6 +116,7 @@ impl Kind {
             Place::Form(stage) => Kind::Form(stage),
             Place::Training { .. } => Kind::Training,
             Place::Waiting(game) | Place::Playing(game) => Kind::Game(game),
+            Place::Pair { .. } | Place::Comparing(_) => Kind::Pairs,
             Place::Debriefing | Place::Complete | Place::Stopped => Kind::Debriefing,
         }
     }
@@ -164,7 +170,10 @@ mod tests {
             if seen.last() != Some(&on) {
                 seen.push(on);
             }
-            assert_eq!(next.is_none(), seen.last().is_some_and(|on| on == "Debriefing"));
+            assert_eq!(
+                next.is_none(),
+                seen.last().is_some_and(|on| on == "Debriefing")
+            );
             protocol.happen(happening).unwrap();
         }
         assert_eq!(
@@ -191,6 +200,11 @@ mod tests {
         });
         protocol.happen(Happening::Stop).unwrap();
         assert_eq!(on_and_next(&protocol), (None, None));
-        assert!(protocol.outline().iter().all(|part| !part.name.contains("training")));
+        assert!(
+            protocol
+                .outline()
+                .iter()
+                .all(|part| !part.name.contains("training"))
+        );
     }
 }

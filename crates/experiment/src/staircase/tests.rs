@@ -2,34 +2,6 @@
 
 use super::*;
 
-/// Says 'different' with a chance that rises with the difference: a logistic in its logarithm, no shape that the rules assume.
-struct Observer {
-    /// Difference, as a part of the range, that is called different 70.7 % of the time.
-    target: f64,
-    false_alarms: f64,
-    random: SplitMix64,
-}
-
-impl Observer {
-    fn reply(&mut self, difference: f64) -> Reply {
-        let guessed = self.false_alarms;
-        let chance = if difference > 0.0 {
-            // Steepness 4 per factor e; shifted so that the chance at the target is 1 / sqrt 2.
-            let seen = (TARGET - guessed) / (1.0 - guessed);
-            let shift = (seen / (1.0 - seen)).ln();
-            guessed
-                + (1.0 - guessed) / (1.0 + (-(4.0 * (difference / self.target).ln() + shift)).exp())
-        } else {
-            guessed
-        };
-        if self.random.uniform() < chance {
-            Reply::Different
-        } else {
-            Reply::Same
-        }
-    }
-}
-
 fn plan(rule: Rule) -> StaircasePlan {
     StaircasePlan {
         key: "objects.elasticity".to_owned(),
@@ -43,13 +15,14 @@ fn plan(rule: Rule) -> StaircasePlan {
 
 fn run(rule: Rule, target: f64, seed: u64) -> Staircase {
     let mut staircase = Staircase::new(&plan(rule), seed).unwrap();
-    let mut observer = Observer {
+    let observer = Observer {
         target,
         false_alarms: 0.08,
-        random: SplitMix64::for_index(seed, 77),
     };
+    let mut random = SplitMix64::for_index(seed, 77);
     while let Some(trial) = staircase.next_trial().unwrap() {
-        staircase.reply(observer.reply(trial.difference)).unwrap();
+        let reply = observer.reply(trial.difference, &mut random);
+        staircase.reply(reply).unwrap();
     }
     staircase
 }
@@ -117,13 +90,14 @@ fn one_up_two_down_settles_where_70_7_percent_are_different() {
     let mut log_error = 0.0;
     for seed in 0..40 {
         let mut staircase = Staircase::new(&long, seed).unwrap();
-        let mut observer = Observer {
+        let observer = Observer {
             target: 0.2,
             false_alarms: 0.0,
-            random: SplitMix64::for_index(seed, 3),
         };
+        let mut random = SplitMix64::for_index(seed, 3);
         while let Some(trial) = staircase.next_trial().unwrap() {
-            staircase.reply(observer.reply(trial.difference)).unwrap();
+            let reply = observer.reply(trial.difference, &mut random);
+            staircase.reply(reply).unwrap();
         }
         log_error += (staircase.estimate().unwrap().threshold / 0.1).ln() / 40.0;
     }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Table, Tables, answers, motion, sessions};
+use super::{Table, Tables, answers, motion, pairs, sessions};
 use crate::files::{self, FileError};
 use crate::record::SessionRecord;
 use crate::study::{ParticipantId, Study};
@@ -144,6 +144,18 @@ impl Tables<'_> {
             "presence.csv",
             &answers::presence(questionnaire, each_game, records),
         )?;
+        if let Some(plan) = &self.study.plan().staircase {
+            put("thresholds.csv", &pairs::thresholds(records, plan))?;
+            let mut compared: Option<Table> = None;
+            for record in records {
+                let Some(pairs) = &record.pairs else { continue };
+                let key = [("participant_id", record.participant.to_string())];
+                add(&mut compared, pairs::compared(pairs, plan), &key);
+            }
+            if let Some(compared) = compared {
+                put("pairs.csv", &compared)?;
+            }
+        }
         let mut joined: Option<Table> = None;
         let mut of_sessions: Option<Table> = None;
         for record in records {

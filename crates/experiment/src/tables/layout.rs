@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use super::{Table, answers, motion, pretty, sessions};
+use super::{Table, answers, motion, pairs, pretty, sessions};
 use crate::files::{self, FileError};
 use crate::record::{Run, SessionRecord};
 use crate::study::{Lock, Study};
@@ -70,6 +70,19 @@ impl<'a> Tables<'a> {
             &self.folder.join("task-bowling_events.json"),
             &pretty(&motion::events_dictionary()),
         )?;
+        if let Some(plan) = &self.study.plan().staircase {
+            let thresholds = pairs::thresholds(&records, plan);
+            let mut dictionary = thresholds.dictionary();
+            dictionary.insert(
+                "MeasurementToolMetadata".to_owned(),
+                json!({ "Description": "pairs of throws that were called same or different" }),
+            );
+            self.put_with_dictionary(
+                "phenotype/thresholds",
+                &thresholds,
+                Value::Object(dictionary),
+            )?;
+        }
         for of_one in records.chunk_by(|a, b| a.participant == b.participant) {
             let id = &of_one[0].participant;
             let table = sessions::sessions(&of_one.iter().collect::<Vec<_>>());
@@ -94,6 +107,14 @@ impl<'a> Tables<'a> {
     ) -> Result<(), FileError> {
         let (session, stem) = self.session(record);
         let system = system(record);
+        if let (Some(plan), Some(pairs)) = (&self.study.plan().staircase, &record.pairs) {
+            let table = pairs::compared(pairs, plan);
+            let path = |end: &str| session.join(format!("beh/{stem}_task-pairs_beh.{end}"));
+            let mut dictionary = table.dictionary();
+            dictionary.insert("TaskName".to_owned(), "pairs".into());
+            self.put(&path("tsv"), &table.tsv())?;
+            self.put(&path("json"), &pretty(&Value::Object(dictionary)))?;
+        }
         for run in &record.runs {
             let events = motion::events(run).tsv();
             if !with_motion {
@@ -174,12 +195,18 @@ impl<'a> Tables<'a> {
 
     fn readme(&self, sessions: usize) -> String {
         let plan = self.study.plan();
+        let what = if plan.staircase.is_some() {
+            "Each participant compared pairs of throws that differ in one parameter of how objects collide, and\n\
+             said whether they felt the same; what they came to is in phenotype/thresholds.tsv, the pairs in sub-*/ses-*/beh."
+        } else {
+            "Each participant played two games, one after pressing the Red button and one after the Blue, under two\n\
+             conditions that differ in how objects collide. Which condition a button meant is in the study's allocation, which is kept\n\
+             outside this dataset; `slot` in participants.tsv joins the two."
+        };
         format!(
             "# {}\n\n\
              {sessions} sessions of a bowling experiment in a virtual room, after S. Uno and M. Slater (1997), *The Sensitivity of Presence to\n\
-             Collision Response*. Each participant played two games, one after pressing the Red button and one after the Blue, under two\n\
-             conditions that differ in how objects collide. Which condition a button meant is in the study's allocation, which is kept\n\
-             outside this dataset; `slot` in participants.tsv joins the two.\n\n\
+             Collision Response*. {what}\n\n\
              - participants.tsv: a row for each participant; what was asked before the games.\n\
              - phenotype/presence.tsv: a row for each session; what was asked between and after the games.\n\
              - sub-*/sub-*_sessions.tsv: what each session was recorded with.\n\

@@ -123,6 +123,7 @@ pub(crate) fn records(study: &Study, lock: &Lock, count: u64) -> Vec<SessionReco
                 .map(|stage| filled(study, stage, step, "q4"))
                 .to_vec(),
             runs: vec![run(1, Button::Red), run(2, Button::Blue)],
+            pairs: None,
             provenance: Provenance {
                 version: "0.1.0".to_owned(),
                 commit: "0123abc".to_owned(),
