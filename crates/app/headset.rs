@@ -67,13 +67,17 @@ pub fn run(
     let settings = HeadsetSettings { refresh_rate_hz };
     let stop = play::interruption()?;
     let stage = Stage::open(settings, root, &config)?;
-    println!(
-        "{} on {}.",
-        stage.headset.headset().system,
-        stage.headset.headset().runtime
-    );
+    let headset = stage.headset.headset();
+    println!("{} on {}.", headset.system, headset.runtime);
+    let made = json!({ "headset": {
+        "system": headset.system,
+        "vendor_id": headset.vendor_id,
+        "runtime": headset.runtime,
+        "eye_px": headset.eye_size,
+    }});
     // Last: nothing is written before everything else works.
     let mut session = Session::start(setup)?;
+    session.device(made)?;
     let ears = Ears::open(&config);
     if let Some(line) = ears.line() {
         session.device(line)?;

@@ -99,6 +99,19 @@ impl Client {
     /// # Panics
     /// When it cannot be started.
     pub fn start_in(service: &Service, arguments: &[&str], environment: &[(&str, &OsStr)]) -> Self {
+        Self::start_told(service, arguments, environment, Stdio::null())
+    }
+
+    /// As [`Self::start_in`], with what is typed at its terminal.
+    ///
+    /// # Panics
+    /// When it cannot be started.
+    pub fn start_told(
+        service: &Service,
+        arguments: &[&str],
+        environment: &[(&str, &OsStr)],
+        typed: Stdio,
+    ) -> Self {
         let layers = Layers::new();
         let mut command = service.client_command(Path::new(env!("CARGO_BIN_EXE_bowling")));
         command
@@ -107,6 +120,7 @@ impl Client {
             .env("BOWLING_ROOT", env!("CARGO_MANIFEST_DIR"))
             .envs(layers.environment())
             .envs(environment.iter().copied())
+            .stdin(typed)
             .stdout(Stdio::piped())
             .stderr(Stdio::piped());
         let mut process = Process::start("bowling", &mut command);
@@ -223,11 +237,18 @@ pub struct JournalLines {
 /// # Panics
 /// When there is no journal after `limit`.
 pub fn journal_lines(folder: &Path, limit: Duration) -> JournalLines {
-    let path = folder.join("journal.jsonl");
-    let file = ask_until(limit, || File::open(&path).ok())
+    journal_file(&folder.join("journal.jsonl"), limit)
+}
+
+/// The lines of the journal `path`.
+///
+/// # Panics
+/// When there is none after `limit`.
+pub fn journal_file(path: &Path, limit: Duration) -> JournalLines {
+    let file = ask_until(limit, || File::open(path).ok())
         .unwrap_or_else(|| panic!("no {} within {limit:?}", path.display()));
     JournalLines {
-        path,
+        path: path.to_owned(),
         file: BufReader::new(file),
         line: Vec::new(),
     }

@@ -33,5 +33,7 @@ mod shared;
 mod signals;
 /// How long the first picture takes.
 mod start;
+/// A study's questions in the room, and what its tables say of the device.
+mod study;
 /// The validation layers watch every program of these tests, and are watched.
 mod validation;

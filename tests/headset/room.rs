@@ -4,13 +4,13 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use bowling_app::journal::{Header, InputLine};
+use bowling_app::journal::{Header, InputLine, settings};
 use game::{Game, Input};
 use glam::{DQuat, DVec3};
 use physics::Pose;
 use serde_json::Value;
 
-use crate::client::{Client, JournalLines, journal_lines};
+use crate::client::{Client, JournalLines, journal_file};
 use crate::remote::{Controller, Packet, Remote};
 use crate::service::Service;
 
@@ -52,7 +52,12 @@ impl Room {
     /// Enters the room of a program that has begun to record into `folder`.
     pub fn enter(service: &Service, client: &mut Client, folder: &Path) -> Self {
         client.wait_for("Recording into", PATIENCE);
-        let mut journal = journal_lines(folder, PATIENCE);
+        Self::follow_from(service, &folder.join("journal.jsonl"))
+    }
+
+    /// Enters the room of a program that has begun to write the journal `path`, a recording's or a study's.
+    pub fn follow_from(service: &Service, path: &Path) -> Self {
+        let mut journal = journal_file(path, PATIENCE);
         let line = journal.next_within(PATIENCE).expect("a header");
         let line: Value = serde_json::from_str(&line).expect("a line of JSON");
         let header: Header = serde_json::from_value(line["header"].clone()).expect("a header");
@@ -63,8 +68,11 @@ impl Room {
         let mut room = Self {
             remote: Remote::connect(service.port()).expect("the service listens"),
             journal,
-            game: Game::new(header.conditions.expect("no study"), header.frames)
-                .expect("the program has it too"),
+            game: Game::new(
+                settings::of(path, &header).expect("the journal's, or the study's"),
+                header.frames,
+            )
+            .expect("the program has it too"),
             packet,
             said: Vec::new(),
             input: Input::default(),

@@ -38,6 +38,8 @@ pub struct Headset {
     pub runtime: String,
     /// The system's own name.
     pub system: String,
+    /// Who made it: the number that its USB devices have.
+    pub vendor_id: u32,
     /// Pixels that the runtime recommends per eye, width and height.
     pub eye_size: [u32; 2],
 }

@@ -62,10 +62,11 @@ impl Runtime {
             eye.recommended_image_rect_width,
             eye.recommended_image_rect_height,
         ];
-        let system_name = instance.system_properties(system)?.system_name;
+        let properties = instance.system_properties(system)?;
         Ok(Self {
             headset: Headset {
-                system: system_name,
+                system: properties.system_name,
+                vendor_id: properties.vendor_id,
                 runtime,
                 eye_size,
             },
