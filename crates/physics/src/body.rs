@@ -11,7 +11,7 @@ use crate::compound::Compound;
 use crate::effects::Effect;
 use crate::oil::OilPattern;
 use crate::pose::Pose;
-use crate::world::Settings;
+use crate::settings::Settings;
 
 pub use def::{BodyDef, MassProperties, Material, Motion};
 pub(crate) use motion::{Spin, Sweep, turn};
@@ -349,5 +349,15 @@ impl Body {
                 self.momentum += arm.cross(impulse);
             }
         }
+    }
+}
+
+impl Body {
+    pub(crate) fn is_finite(&self) -> bool {
+        self.position.is_finite()
+            && self.rotation.is_finite()
+            && self.linear.is_finite()
+            && self.momentum.is_finite()
+            && self.turning.is_finite()
     }
 }

@@ -181,6 +181,31 @@ impl Counts {
     }
 }
 
+/// How much work a world's steps were so far: counts, not times, so that they are the same on every machine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Effort {
+    /// Stretches of time that islands of lasting contacts were carried through.
+    pub stretches: u64,
+    /// Contacts that came about and were answered.
+    pub events: u64,
+    /// Impulses given in their answers.
+    pub impulses: u64,
+    /// Times at which a pair of parts was looked at.
+    pub looks: u64,
+    /// Iterations of the detection in those looks.
+    pub iterations: u64,
+    /// Pairs of parts whose clearance was not used up, so that nothing was looked at.
+    pub spared: u64,
+    /// Pairs of bodies that were near each other, step by step.
+    pub near: u64,
+    /// How many of those were due; the others waited.
+    pub due: u64,
+    /// Answers of single lasting contacts.
+    pub passes: u64,
+    /// How often the work of each effect was done on a body or a contact.
+    pub work: Counts,
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

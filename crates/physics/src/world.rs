@@ -3,93 +3,18 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use thiserror::Error;
 
 use crate::body::{Body, BodyDef, Motion};
-use crate::effects::{Counts, Effect, Effects};
+use crate::effects::{Effect, Effects, Effort};
 use crate::oil::OilPattern;
 use crate::pose::Pose;
 use crate::response::Response;
+use crate::settings::{Settings, SettingsError};
 use crate::step::near::Broad;
 use crate::step::pairs::Pairs;
 use crate::step::plan::{Plan, PlannedStage};
 use crate::step::scratch::Scratch;
 use crate::surface::{PairContact, PairTable, Surface};
-
-/// Constants of a scene.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    /// Steps per simulated second [1/s]; independent of any display.
-    pub step_hz: f64,
-    /// Acceleration of gravity [m/s2], world frame.
-    pub gravity: DVec3,
-    /// Law of impacts.
-    pub response: Response,
-    /// Largest number of new normals per search (§2.1); 20 in the paper's experiment.
-    pub iteration_cap: u32,
-    /// Largest number of sweeps over a group of lasting contacts under `Response::Coulomb`, and of one that hardly moves
-    /// under the paper's laws, which ends earlier where it has come to terms; what moves faster ends at 40 under these.
-    pub sweep_cap: u32,
-    /// Contact time after which a lasting contact has taken the share `friction_rate` of the slip [s].
-    pub friction_reference_s: f64,
-    /// What the steps compute; everything else executes nothing.
-    pub effects: Effects,
-    /// Arm at which a contact's normal force resists rolling [m]; read with `Effect::RollingResistance` alone.
-    pub rolling_resistance_m: f64,
-    /// Density of the air [kg/m3]; read with `Effect::Drag` alone.
-    pub air_density_kgpm3: f64,
-    /// Coefficients of pairs that [`World::set_pair`] has not named; `Response::Coulomb` alone reads them.
-    pub contact: PairContact,
-}
-
-impl Default for Settings {
-    fn default() -> Settings {
-        Settings {
-            step_hz: 720.0,
-            gravity: DVec3::new(0.0, -9.81, 0.0),
-            response: Response::Guarded,
-            iteration_cap: 20,
-            sweep_cap: 3000,
-            friction_reference_s: 1.0 / 60.0,
-            effects: Effects::default(),
-            rolling_resistance_m: 0.0,
-            air_density_kgpm3: 0.0,
-            contact: PairContact {
-                restitution: 0.5,
-                friction: 0.2,
-            },
-        }
-    }
-}
-
-/// Settings that no world can run with.
-#[derive(Clone, Debug, Error, PartialEq)]
-pub enum SettingsError {
-    /// The step rate must be positive and finite.
-    #[error("step_hz must be a positive number of steps per second, not {0}")]
-    StepRate(f64),
-    /// Gravity must be finite.
-    #[error("gravity must be a finite acceleration in m/s2, not {0}")]
-    Gravity(DVec3),
-    /// At least one iteration is needed.
-    #[error("iteration_cap must be at least 1")]
-    IterationCap,
-    /// At least one sweep is needed.
-    #[error("sweep_cap must be at least 1")]
-    SweepCap,
-    /// The reference interval must be positive and finite.
-    #[error("friction_reference_s must be a positive time in seconds, not {0}")]
-    FrictionReference(f64),
-    /// The arm of the rolling resistance is finite and not negative.
-    #[error("rolling_resistance_m must be a length of 0 m or more, not {0}")]
-    RollingResistance(f64),
-    /// The density of the air is finite and not negative.
-    #[error("air_density_kgpm3 must be a density of 0 kg/m3 or more, not {0}")]
-    AirDensity(f64),
-    /// Restitution lies between 0 and 1, friction is positive or zero.
-    #[error("a pair needs a restitution from 0 to 1 and a friction coefficient of 0 or more, not {} and {}", .0.restitution, .0.friction)]
-    Pair(PairContact),
-}
 
 /// A body's name in its world; stale after the body is removed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -113,31 +38,6 @@ pub struct Impact {
     pub approach_speed: f64,
     /// Impulse on a [N s]; b received the opposite.
     pub impulse: DVec3,
-}
-
-/// How much work a world's steps were so far: counts, not times, so that they are the same on every machine.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Effort {
-    /// Stretches of time that islands of lasting contacts were carried through.
-    pub stretches: u64,
-    /// Contacts that came about and were answered.
-    pub events: u64,
-    /// Impulses given in their answers.
-    pub impulses: u64,
-    /// Times at which a pair of parts was looked at.
-    pub looks: u64,
-    /// Iterations of the detection in those looks.
-    pub iterations: u64,
-    /// Pairs of parts whose clearance was not used up, so that nothing was looked at.
-    pub spared: u64,
-    /// Pairs of bodies that were near each other, step by step.
-    pub near: u64,
-    /// How many of those were due; the others waited.
-    pub due: u64,
-    /// Answers of single lasting contacts.
-    pub passes: u64,
-    /// How often the work of each effect was done on a body or a contact.
-    pub work: Counts,
 }
 
 /// Bodies and their contacts. Cloning it is a snapshot: the clone runs on to the same bits.
@@ -172,36 +72,7 @@ impl World {
     /// # Errors
     /// On a setting that cannot be used.
     pub fn new(settings: Settings) -> Result<World, SettingsError> {
-        let positive = |x: f64| x > 0.0 && x.is_finite();
-        if !positive(settings.step_hz) {
-            return Err(SettingsError::StepRate(settings.step_hz));
-        }
-        if !settings.gravity.is_finite() {
-            return Err(SettingsError::Gravity(settings.gravity));
-        }
-        if settings.iteration_cap == 0 {
-            return Err(SettingsError::IterationCap);
-        }
-        if settings.sweep_cap == 0 {
-            return Err(SettingsError::SweepCap);
-        }
-        if !positive(settings.friction_reference_s) {
-            return Err(SettingsError::FrictionReference(
-                settings.friction_reference_s,
-            ));
-        }
-        let amount = |x: f64| x >= 0.0 && x.is_finite();
-        if !amount(settings.rolling_resistance_m) {
-            return Err(SettingsError::RollingResistance(
-                settings.rolling_resistance_m,
-            ));
-        }
-        if !amount(settings.air_density_kgpm3) {
-            return Err(SettingsError::AirDensity(settings.air_density_kgpm3));
-        }
-        if !settings.contact.is_valid() {
-            return Err(SettingsError::Pair(settings.contact));
-        }
+        settings.check()?;
         let called = settings.calls_for();
         Ok(World {
             settings,
@@ -508,15 +379,5 @@ impl World {
             };
             body.set_velocity(linear, angular);
         }
-    }
-}
-
-impl Body {
-    pub(crate) fn is_finite(&self) -> bool {
-        self.position.is_finite()
-            && self.rotation.is_finite()
-            && self.linear.is_finite()
-            && self.momentum.is_finite()
-            && self.turning.is_finite()
     }
 }

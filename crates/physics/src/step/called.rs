@@ -3,8 +3,9 @@
 use crate::body::{Body, Motion};
 use crate::effects::{Effect, Effects};
 use crate::response::Response;
+use crate::settings::Settings;
 use crate::surface::PairContact;
-use crate::world::{Settings, World};
+use crate::world::World;
 
 /// The effects of those pairs that are true.
 fn all_of(pairs: &[(Effect, bool)]) -> Effects {

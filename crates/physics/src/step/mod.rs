@@ -1,5 +1,6 @@
 //! One fixed step: lasting contacts, then impacts in the order of time, then sleep.
 
+mod mover;
 pub(crate) mod near;
 pub(crate) mod pairs;
 pub(crate) mod plan;

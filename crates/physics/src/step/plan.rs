@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use crate::effects::{Effect, Effects};
 use crate::response::Response;
-use crate::world::Settings;
+use crate::settings::Settings;
 
 /// A stage of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

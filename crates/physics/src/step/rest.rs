@@ -13,8 +13,9 @@ use glam::DVec3;
 
 use super::RELEASE;
 use super::grip::Friction;
+use super::mover::Mover;
 use super::pairs::{Contact, Key, Load};
-use super::row::{Mover, Row};
+use super::row::Row;
 use super::scratch::Carry;
 use super::solve::{Halves, Work, group, most_passes};
 use super::touch::Touch;

@@ -5,7 +5,8 @@
 
 use glam::DVec3;
 
-use super::row::{Mover, Row};
+use super::mover::Mover;
+use super::row::Row;
 
 impl Row {
     /// Whether anything resists rolling here, `arm` [m] being the rolling resistance of the scene.

@@ -1,14 +1,13 @@
 //! One lasting contact as a row of a small velocity problem.
-//!
-//! Rows see bodies as *movers*: velocities and inverse masses, nothing else.
 
 use glam::{DMat2, DMat3, DVec2, DVec3};
 
 use super::base::Base;
 use super::grip::{Friction, Hold};
+use super::mover::Mover;
 use super::pairs::Load;
 use super::touch::Touch;
-use crate::body::{Body, Motion};
+use crate::body::Body;
 use crate::response::{compliance, rate_without_pull};
 
 /// Approach that a contact has to stop for friction to act there [m/s]: of several contacts that share a load in no
@@ -17,54 +16,6 @@ const NOTHING: f64 = 1e-12;
 
 /// Most passes over normal and friction of a base on its edge.
 const EDGE_PASSES: u32 = 8;
-
-/// A body as the rows see it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Mover {
-    pub linear: DVec3,
-    pub angular: DVec3,
-    inv_mass: f64,
-    inv_inertia: DMat3,
-    is_driven: bool,
-}
-
-impl Mover {
-    pub fn new(body: &Body) -> Mover {
-        Mover {
-            linear: body.linear_now(),
-            angular: body.angular_velocity(),
-            inv_mass: body.inv_mass(),
-            inv_inertia: body.inv_inertia(),
-            is_driven: body.motion == Motion::Driven,
-        }
-    }
-
-    fn velocity(&self, arm: DVec3) -> DVec3 {
-        self.linear + self.angular.cross(arm)
-    }
-
-    fn push(&mut self, arm: DVec3, impulse: DVec3) {
-        if self.inv_mass > 0.0 {
-            self.linear += impulse * self.inv_mass;
-            self.angular += self.inv_inertia * arm.cross(impulse);
-        }
-    }
-
-    /// How easily the body turns, in the mean over all axes [1/(kg m2)], times three.
-    fn ease(&self) -> f64 {
-        let i = &self.inv_inertia;
-        i.x_axis.x + i.y_axis.y + i.z_axis.z
-    }
-
-    /// Change of the angular velocity [rad/s] that an angular impulse makes [N m s].
-    pub fn turn_by(&self, angular_impulse: DVec3) -> DVec3 {
-        self.inv_inertia * angular_impulse
-    }
-
-    pub fn is_moved(&self) -> bool {
-        self.inv_mass > 0.0
-    }
-}
 
 /// Directions across a normal, and the inverse of `K` in their plane [kg].
 #[derive(Clone, Copy, Debug, Default)]

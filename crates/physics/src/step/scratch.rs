@@ -5,8 +5,9 @@ use std::collections::BinaryHeap;
 use glam::DVec3;
 
 use super::islands::Islands;
+use super::mover::Mover;
 use super::pairs::Contact;
-use super::row::{Mover, Row};
+use super::row::Row;
 use super::search::Event;
 use super::touch::Touch;
 

@@ -8,12 +8,13 @@
 use glam::DVec3;
 
 use super::grip::Friction;
-use super::row::{Mover, Row};
+use super::mover::Mover;
+use super::row::Row;
 use super::scratch::Carry;
 use super::touch::Touch;
 use crate::body::Body;
 use crate::response::Response;
-use crate::world::Settings;
+use crate::settings::Settings;
 
 /// Most passes over the normals of a group that slips; in a cone, and where a group creeps, the settings say.
 ///
