@@ -6,6 +6,7 @@ use std::sync::LazyLock;
 
 use bowling_app::accuracy::budget::Budget;
 use bowling_app::accuracy::report::Report;
+use bowling_app::accuracy::table::csv;
 use bowling_app::accuracy::{judge, reports};
 
 use crate::support::{bowling, fresh_folder};
@@ -135,6 +136,23 @@ fn a_column_without_change_or_explanation_is_a_complaint() {
         judge::unexplained(&report).len(),
         3 + judge::unexplained(&CAP).len()
     );
+}
+
+#[test]
+fn a_comma_in_a_name_ends_no_cell() {
+    let mut report = CAP.clone();
+    report.lines.truncate(1);
+    report.lines[0].points.truncate(1);
+    report.lines[0].name = "a peer, \"quick\"".into();
+    let table = csv(&[report]);
+    let mut lines = table.lines();
+    let cells = lines.next().expect("a head").split(',').count();
+    let row = lines.next().expect("a row");
+    assert!(row.contains(r#","a peer, ""quick""","#), "{row}");
+    // As many commas outside of quotes as in the head.
+    let outside = row.split('"').step_by(2);
+    let commas: usize = outside.map(|part| part.matches(',').count()).sum();
+    assert_eq!(commas, cells - 1, "{row}");
 }
 
 #[test]

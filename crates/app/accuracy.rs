@@ -28,7 +28,7 @@ mod simbench;
 mod slide;
 mod solver;
 mod step;
-mod table;
+pub mod table;
 mod update;
 
 use std::fs;

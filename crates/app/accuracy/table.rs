@@ -1,5 +1,6 @@
 //! Reports as tables to read and as comma-separated values.
 
+use std::borrow::Cow;
 use std::fmt::Write;
 
 use super::judge;
@@ -29,15 +30,15 @@ pub fn csv(reports: &[Report]) -> String {
                         text,
                         "{},{},{},{},{},{},{},{:e},{:e},{},{:.2},{:.2},{:.2},{hz},{step}",
                         report.dial,
-                        line.panel,
-                        line.name,
-                        point.setting,
+                        field(&line.panel),
+                        field(&line.name),
+                        field(&point.setting),
                         point.value,
                         point.is_default,
                         measure.name,
                         point.errors[index],
                         line.floors[index],
-                        line.time_of,
+                        field(line.time_of),
                         time.median,
                         time.low,
                         time.high
@@ -48,6 +49,15 @@ pub fn csv(reports: &[Report]) -> String {
         }
     }
     text
+}
+
+/// A cell, in quotes where a comma in it would end it (RFC 4180).
+fn field(text: &str) -> Cow<'_, str> {
+    if text.contains([',', '"']) {
+        Cow::Owned(format!("\"{}\"", text.replace('"', "\"\"")))
+    } else {
+        Cow::Borrowed(text)
+    }
 }
 
 /// The table of one dial, what it shows, and how its references were checked.
