@@ -281,7 +281,7 @@ fn swapped_eyes_a_missing_shadow_and_a_mirrored_lane_are_all_seen() {
 const EFFECTS: [(&str, &str, &str); 8] = [
     ("shadows", "desk", "shows.shadows=false"),
     ("reflection", "foul line", "shows.reflection=false"),
-    ("ambient-occlusion", "hall", "shows.ambient_occlusion=false"),
+    ("ambient-occlusion", "pins", "shows.ambient_occlusion=false"),
     (
         "neighbouring-lanes",
         "start",

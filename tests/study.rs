@@ -18,6 +18,7 @@ use bowling_app::pictures::Wanted;
 use bowling_app::session::Session;
 use bowling_app::study::experimenter;
 use bowling_app::study::seat::{self, Guest};
+use bowling_app::words::Words;
 use experiment::journal::Lines;
 use experiment::protocol::{AnsweredIn, Place, Standing};
 use experiment::questionnaire::Answer;
@@ -454,9 +455,36 @@ fn no_throw_is_shown_again_in_a_study() {
 }
 
 #[test]
+fn a_study_helps_nobody_unless_its_plan_says_so() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let shown = |name: &str, asked: &[&str]| {
+        let folder = fresh_folder(name).join("study");
+        let mut arguments = vec!["study", "new", text(&folder), "--subjects", "1"];
+        arguments.extend(["--withdrawal-until", "2030-01-01"]);
+        arguments.extend(["--retention-until", "2031-01-01"]);
+        arguments.extend(asked);
+        said(&arguments);
+        let study = Study::open(&folder).expect("just made");
+        let conditions = seat::conditions(&study, 1, root).expect("the shipped settings");
+        let of = |config: &game::Config| {
+            let guidance = &config.guidance;
+            let gesture = config.calibration.gesture;
+            [guidance.glow, guidance.hints, guidance.feedback, gesture]
+        };
+        let lobby = of(&conditions.lobby);
+        assert_eq!((of(&conditions.red), of(&conditions.blue)), (lobby, lobby));
+        lobby
+    };
+    assert_eq!(shown("study-unguided", &[]), [false; 4]);
+    let asked = ["--guidance", "hints,feedback"];
+    assert_eq!(shown("study-guided", &asked), [false, true, true, false]);
+}
+
+#[test]
 fn the_panel_is_seen_where_it_is_pointed_at() {
     let (_, _, mut session) = seated("study-seen");
-    let mut panel = Panel::new(AnsweredIn::Headset);
+    let words = Words::shipped();
+    let mut panel = Panel::new(AnsweredIn::Headset, words.clone());
     let head = Pose::from_position(DVec3::new(0.0, 1.7, 0.0));
     let input = Input {
         head: Some(Tracked::at(head)),
@@ -467,7 +495,7 @@ fn the_panel_is_seen_where_it_is_pointed_at() {
     panel.attend(&mut session).expect("writable");
     let gpu = Gpu::new(BackendChoice::Auto).expect("a driver");
     let mut renderer = Renderer::new(&gpu, RendererSettings::default()).expect("it draws");
-    let mut stock = PanelStock::new(&gpu, &mut renderer).expect("it draws");
+    let mut stock = PanelStock::new(&gpu, &mut renderer, &words).expect("it draws");
     let instances = stock.instances(&panel, &mut renderer).expect("it paints");
     let scene = Scene {
         instances,
@@ -510,7 +538,7 @@ fn the_panel_is_seen_where_it_is_pointed_at() {
 #[test]
 fn a_hand_answers_by_pointing_and_stops_at_the_sign() {
     let (study, who, mut session) = seated("study-panel");
-    let mut panel = Panel::new(AnsweredIn::Headset);
+    let mut panel = Panel::new(AnsweredIn::Headset, Words::shipped());
     let item = |session: &Session| {
         let form = session.form()?;
         Some(form.current()?.id.clone())

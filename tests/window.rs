@@ -120,6 +120,41 @@ struct Person {
 }
 
 impl Person {
+    /// Somebody who sits down before a window that records into `recording`.
+    fn before(screen: Screen, recording: &Path) -> Self {
+        let eyes = Eyes::open(&recording.join("journal.jsonl"));
+        Self {
+            screen,
+            eyes,
+            cursor: (0.0, 0.0),
+        }
+    }
+
+    /// Bowls until the game is over, then ends the session; keeps what was seen after a throw in `folder`.
+    fn play_to_the_end(&mut self, folder: &Path) {
+        let is_rolled = |kind: &EventKind| matches!(kind, EventKind::Rolled { .. });
+        loop {
+            self.take_ball();
+            self.bowl();
+            let rolled = self.count(is_rolled);
+            self.eyes.look_for("the throw to be scored", |_, seen| {
+                let now = seen.iter().filter(|kind| is_rolled(kind)).count();
+                (now > rolled).then_some(())
+            });
+            let picture = self.screen.shot();
+            picture
+                .save(folder.join("after-throw.png"))
+                .expect("the picture can be kept");
+            if self.count(|kind| matches!(kind, EventKind::GameOver { .. })) > 0 {
+                break;
+            }
+            self.eyes.look_for("the pins to be ready", |game, _| {
+                (game.phase() == Phase::Ready).then_some(())
+            });
+        }
+        self.screen.act(&["key", "Escape"]);
+    }
+
     fn heading(&mut self) -> f64 {
         self.eyes.catch_up();
         let head = self
@@ -333,18 +368,12 @@ fn pixels(x: f64, y: f64) -> (String, String) {
 }
 
 /// The program in a window that fills the screen, recording into a folder.
-fn open_window(screen: &Screen, recording: &Path) -> Process {
+fn open_window(screen: &Screen, recording: &Path, arguments: &[&str]) -> Process {
     let mut command = Command::new(env!("CARGO_BIN_EXE_bowling"));
     command
-        .args([
-            "play",
-            "--device",
-            "desk",
-            "--frames",
-            "1",
-            "--no-video",
-            "--out",
-        ])
+        .args(["play", "--device", "desk", "--no-video"])
+        .args(arguments)
+        .arg("--out")
         .arg(recording)
         .env("DISPLAY", screen.display())
         .env_remove("WAYLAND_DISPLAY")
@@ -375,12 +404,29 @@ fn letters(screen: &Screen) -> usize {
         .count()
 }
 
+/// A game of one frame.
+const ONE_FRAME: [&str; 2] = ["--frames", "1"];
+
+/// What the program has said when it has ended in order.
+fn ended(mut program: Process) -> String {
+    let status = program.ended_within(PATIENCE);
+    let status = status.expect("the program ends");
+    let mut said = [String::new(), String::new()];
+    let [output, errors] = &mut said;
+    let mut stdout = program.child().stdout.take().expect("piped");
+    stdout.read_to_string(output).expect("text");
+    let mut stderr = program.child().stderr.take().expect("piped");
+    stderr.read_to_string(errors).expect("text");
+    assert!(status.success(), "{output}\n{errors}");
+    std::mem::take(output)
+}
+
 #[test]
 fn f3_shows_what_it_costs_and_hides_it_again() {
     let folder = support::fresh_folder("window-cost");
     let screen = Screen::open(SCREEN);
     let recording = folder.join("recording");
-    let _program = open_window(&screen, &recording);
+    let _program = open_window(&screen, &recording, &ONE_FRAME);
     let mut eyes = Eyes::open(&recording.join("journal.jsonl"));
     eyes.look_for("the first second", |game, _| {
         (game.time() > 1.0).then_some(())
@@ -406,14 +452,8 @@ fn a_person_bowls_a_frame_with_mouse_and_keys() {
     let folder = support::fresh_folder("window");
     let screen = Screen::open(SCREEN);
     let recording = folder.join("recording");
-    let mut program = open_window(&screen, &recording);
-
-    let eyes = Eyes::open(&recording.join("journal.jsonl"));
-    let mut person = Person {
-        screen,
-        eyes,
-        cursor: (0.0, 0.0),
-    };
+    let program = open_window(&screen, &recording, &ONE_FRAME);
+    let mut person = Person::before(screen, &recording);
     person.screen.act(&["key", "F1"]);
     person.screen.act(&["key", "1"]);
     person.eyes.look_for("a game under Red", |game, _| {
@@ -429,50 +469,8 @@ fn a_person_bowls_a_frame_with_mouse_and_keys() {
     );
     person.screen.act(&["key", "F1"]);
 
-    loop {
-        person.take_ball();
-        person.bowl();
-        let rolled = person.count(|kind| matches!(kind, EventKind::Rolled { .. }));
-        person.eyes.look_for("the throw to be scored", |_, seen| {
-            let now = seen
-                .iter()
-                .filter(|kind| matches!(kind, EventKind::Rolled { .. }))
-                .count();
-            (now > rolled).then_some(())
-        });
-        person
-            .screen
-            .shot()
-            .save(folder.join("after-throw.png"))
-            .expect("the picture can be kept");
-        if person.count(|kind| matches!(kind, EventKind::GameOver { .. })) > 0 {
-            break;
-        }
-        person.eyes.look_for("the pins to be ready", |game, _| {
-            (game.phase() == Phase::Ready).then_some(())
-        });
-    }
-    person.screen.act(&["key", "Escape"]);
-
-    let status = program.ended_within(PATIENCE);
-    let status = status.expect("the program ends");
-    let mut output = String::new();
-    program
-        .child()
-        .stdout
-        .take()
-        .expect("piped")
-        .read_to_string(&mut output)
-        .expect("text");
-    let mut errors = String::new();
-    program
-        .child()
-        .stderr
-        .take()
-        .expect("piped")
-        .read_to_string(&mut errors)
-        .expect("text");
-    assert!(status.success(), "{output}\n{errors}");
+    person.play_to_the_end(&folder);
+    let output = ended(program);
     let released = person.eyes.seen.iter().find_map(|kind| match kind {
         EventKind::Released(release) => Some(release.speed),
         _ => None,
@@ -486,6 +484,42 @@ fn a_person_bowls_a_frame_with_mouse_and_keys() {
         recording.join("red-contact-sheet.png").is_file(),
         "{output}"
     );
+    let replay = support::bowling(&["replay", recording.to_str().expect("a plain path")]);
+    assert!(
+        replay.status.success(),
+        "{}",
+        String::from_utf8_lossy(&replay.stderr)
+    );
+}
+
+#[test]
+fn p_pauses_and_r_leads_back_to_the_start() {
+    let folder = support::fresh_folder("window-pause");
+    let screen = Screen::open(SCREEN);
+    let recording = folder.join("recording");
+    let program = open_window(&screen, &recording, &ONE_FRAME);
+    let mut person = Person::before(screen, &recording);
+    person.eyes.look_for("somebody at the desk", |game, _| {
+        game.head_pose_world().map(|_| ())
+    });
+    person.turn_to(1.0);
+    person.screen.act(&["key", "p"]);
+    person
+        .eyes
+        .look_for("a pause", |game, _| game.is_paused().then_some(()));
+    let steps = person.eyes.game.steps();
+    person.screen.act(&["key", "r"]);
+    person.eyes.look_for("the way back", |_, seen| {
+        seen.contains(&EventKind::WentToStart).then_some(())
+    });
+    assert!(person.heading().abs() < 1e-9, "down the lane");
+    assert_eq!(person.eyes.game.steps(), steps, "time stands still");
+    person.screen.act(&["key", "p"]);
+    person.eyes.look_for("time to go on", |game, seen| {
+        (game.steps() > steps && seen.contains(&EventKind::Resumed)).then_some(())
+    });
+    person.screen.act(&["key", "Escape"]);
+    ended(program);
     let replay = support::bowling(&["replay", recording.to_str().expect("a plain path")]);
     assert!(
         replay.status.success(),

@@ -17,8 +17,9 @@ pub use analyse::{AnalyseArguments, PowerArguments};
 pub use capture::{CaptureArguments, ViewChoice};
 pub use compare::{CompareArguments, Sweep};
 pub use study::{
-    EraseArguments, ExportArguments, NewStudyArguments, PlanArguments, ResumeArguments, RuleChoice,
-    RunArguments, SimulateArguments, StudyArguments, StudyCommand, StudyFolder, UnblindArguments,
+    EraseArguments, ExportArguments, GuidanceChoice, NewStudyArguments, PlanArguments,
+    ResumeArguments, RuleChoice, RunArguments, SimulateArguments, StudyArguments, StudyCommand,
+    StudyFolder, UnblindArguments,
 };
 pub use throw::{
     ModelChoice, PinNumbers, ShapeChoice, ShotArguments, Span, StrikeMapArguments, ThrowArguments,
@@ -241,6 +242,18 @@ pub struct PlayArguments {
     )]
     pub seed: u64,
 
+    /// Throw as often as you like, without a game; the lane shows its oil and the way of the last ball.
+    #[arg(long)]
+    pub practice: bool,
+
+    /// Pins that stand before each throw of practice, as 7,10.
+    #[arg(long, value_name = "PINS", requires = "practice", value_parser = throw::leave)]
+    pub leave: Option<PinNumbers>,
+
+    /// Weights of the balls on the rack in practice, from the far end to the near one, in kilograms.
+    #[arg(long, value_name = "KG,..", requires = "practice", value_delimiter = ',', allow_negative_numbers = true, value_parser = throw::ball_kg)]
+    pub ball_kg: Vec<f64>,
+
     /// Folder for the recording; must not hold one already [default: out/TIME-seedN].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -256,6 +269,10 @@ pub struct PlayArguments {
     /// Display to imitate in pictures and videos [default: display.profile of the configuration].
     #[arg(long, value_enum)]
     pub display: Option<DisplayChoice>,
+
+    /// File of every word that is seen, in the folder config [default: guidance.words of the configuration].
+    #[arg(long, value_name = "FILE")]
+    pub words: Option<String>,
 
     /// Change one setting in both conditions; may be given several times.
     ///

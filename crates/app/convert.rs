@@ -1,6 +1,6 @@
 //! From the game's things to the renderer's: models to meshes and materials, a head to two eyes.
 
-mod board;
+pub(crate) mod board;
 mod eyes;
 mod hand;
 mod light;
@@ -8,10 +8,10 @@ mod screen;
 mod shape;
 mod stock;
 
-use game::{Model, Visible};
+use game::{Game, Model, Visible};
 use glam::{DQuat, Mat4, Quat, Vec3};
 use physics::Pose;
-use renderer::{Instance, MAX_OCCLUDERS, Material, Occluder, Scene};
+use renderer::{Instance, MAX_OCCLUDERS, Material, Occluder, Scene, Vignette};
 
 pub use board::Scores;
 pub use eyes::{bird, eyes, spectator, spectator_eyes};
@@ -29,6 +29,7 @@ pub fn scene<'a>(
 ) -> Scene {
     let visible: Vec<Visible> = visible.into_iter().copied().collect();
     let mut instances = stock.scenery.clone();
+    fit_rack_stand(&mut instances, &visible, stock);
     instances.extend(stock.screen_instance());
     for thing in &visible {
         match thing.model {
@@ -43,6 +44,33 @@ pub fn scene<'a>(
         occluders: occluders(&visible, stock),
         enclosure: stock.enclosure,
         ..Scene::default()
+    }
+}
+
+/// The dark edge of the picture while the participant walks by button, where the settings have one.
+pub fn vignette(game: &Game) -> Option<Vignette> {
+    let config = game.config();
+    let comfort = &config.comfort;
+    let strength = game.walking_speed() / config.walking.speed_mps;
+    (comfort.vignette && strength > 0.0).then(|| Vignette {
+        clear: comfort.vignette_clear_deg.to_radians() as f32,
+        strength: strength.min(1.0) as f32,
+    })
+}
+
+/// Stretches the stand under the rack to where the rack is.
+fn fit_rack_stand(instances: &mut [Instance], visible: &[Visible], stock: &Stock) {
+    let stand = &stock.rack_stand;
+    let top = |thing: &Visible| (thing.pose.position.y + 0.5 * thing.size.y) as f32;
+    let rack = visible.iter().filter(|thing| thing.model == Model::Rack);
+    let raised = rack.map(top).fold(0.0, f32::max) - stand.rims;
+    // As the settings have it, or a scene without a rack.
+    if raised.abs() < 1e-4 || raised <= -stand.rims {
+        return;
+    }
+    if let Some(instance) = stand.place.and_then(|place| instances.get_mut(place)) {
+        let share = (stand.height + raised) / stand.height;
+        instance.world_from_mesh *= Mat4::from_scale(Vec3::new(1.0, share, 1.0));
     }
 }
 
@@ -196,6 +224,10 @@ pub(crate) mod tests {
                 .save(textures.join(format!("{name}.png")))
                 .expect("writable");
         }
+        let words = root.path().join("config");
+        std::fs::create_dir_all(&words).expect("writable");
+        let shipped = include_str!("../../config/words.toml");
+        std::fs::write(words.join("words.toml"), shipped).expect("writable");
         let gpu = Gpu::new(BackendChoice::Noop).expect("it needs no driver");
         let mut renderer =
             Renderer::new(&gpu, RendererSettings::default()).expect("plain settings");
@@ -238,5 +270,26 @@ pub(crate) mod tests {
             open.world_from_mesh,
             last(HandShape::Pointing).world_from_mesh
         );
+    }
+
+    #[test]
+    fn the_stand_follows_a_rack_that_was_raised() {
+        let stock = stock();
+        let rack = &config().rack;
+        let place = stock.rack_stand.place.expect("the alley has one");
+        let stretched = |tray: f64| {
+            let mut thing = visible(Model::Rack, DVec3::splat(rack.rim_height_m));
+            thing.pose.position.y = tray + 0.5 * rack.rim_height_m;
+            let scene = scene(&[thing], &stock, HandShape::Closing(0.0));
+            let top = Vec3::Y * stock.rack_stand.height;
+            scene.instances[place]
+                .world_from_mesh
+                .transform_point3(top)
+                .y
+        };
+        for tray in [rack.tray_height_m, 0.5, 0.93] {
+            let top = f64::from(stretched(tray));
+            assert!((top - (tray - 0.04)).abs() < 1e-4, "{tray}: {top}");
+        }
     }
 }

@@ -4,6 +4,7 @@
 //! shared with the main thread, which can close them in order even if a call never returns. A runtime that ends the session or
 //! dies is connected to anew; the game waits meanwhile.
 
+mod around;
 mod attention;
 mod fading;
 mod frames;
@@ -34,8 +35,12 @@ use crate::panel::{Panel, PanelStock};
 use crate::pictures::{Painter, Wanted};
 use crate::play::{self, Progress};
 use crate::session::{Session, Setup};
+use crate::signs::SignStock;
 use crate::sound::Ears;
 use crate::study::attendant::Attendant;
+use crate::words::Words;
+use crate::wrist::Wish;
+use around::Around;
 use attention::Attention;
 use fading::Fading;
 use frames::FrameTimes;
@@ -66,6 +71,7 @@ pub fn run(
     let config = setup.conditions.lobby.clone();
     let settings = HeadsetSettings { refresh_rate_hz };
     let stop = play::interruption()?;
+    let words = Words::load(root, &config)?;
     let stage = Stage::open(settings, root, &config)?;
     let headset = stage.headset.headset();
     println!("{} on {}.", headset.system, headset.runtime);
@@ -100,13 +106,14 @@ pub fn run(
         shared: Arc::clone(&shared),
         root: root.to_owned(),
         participant: Participant::new(config.physics.step_hz),
-        panel: Panel::new(AnsweredIn::Headset),
+        panel: Panel::new(AnsweredIn::Headset, words.clone()),
         times: FrameTimes::default(),
         throws: Throws::default(),
         attention: Attention::new(),
         fading: Fading::new(config.hand.lost_grip_s),
         again: Again::of(&config),
         ears,
+        around: Around::new(&config, words),
         refusal: String::new(),
         config: config.clone(),
         settings,
@@ -148,6 +155,7 @@ struct Stage {
     renderer: Renderer,
     stock: Stock,
     panel: PanelStock,
+    signs: SignStock,
     headset: HeadsetSession,
 }
 
@@ -158,11 +166,14 @@ impl Stage {
             .context("cannot draw for the headset")?;
         let mut stock = Stock::load(&mut renderer, root, config)?;
         stock.add_screen(&mut renderer, root, config)?;
-        let panel = PanelStock::new(headset.gpu(), &mut renderer)?;
+        let words = Words::load(root, config)?;
+        let panel = PanelStock::new(headset.gpu(), &mut renderer, &words)?;
+        let signs = SignStock::new(headset.gpu(), &mut renderer)?;
         Ok(Self {
             renderer,
             stock,
             panel,
+            signs,
             headset,
         })
     }
@@ -186,6 +197,8 @@ struct Player {
     attention: Attention,
     /// The hand that the tracker has lost.
     fading: Fading,
+    /// What is around the participant.
+    around: Around,
     /// Why the last attempt to connect failed.
     refusal: String,
 }
@@ -288,22 +301,31 @@ impl Player {
         let headset = &mut stage.headset;
         let frame = headset.wait()?;
         let readings = headset.read(&frame)?;
-        if let Some(is_paused) = self.attention.press_menu(&readings) {
-            self.shared.note(json!({ "paused": is_paused }))?;
-        }
-        let is_here = self.attention.is_here(headset.focus());
+        let was_paused = self.attention.is_paused();
+        self.attention.press_menu(&readings);
+        self.around.look(headset, &frame)?;
+        let focus = headset.focus();
         let at = frame.display_time_ns();
         let fingers = self.participant.fingers(&readings);
         self.shared.see_fingers(fingers);
         let (participant, panel, keys) = (&mut self.participant, &mut self.panel, &self.shared);
         let (fading, ears, again) = (&mut self.fading, &mut self.ears, &mut self.again);
+        let (attention, around) = (&mut self.attention, &mut self.around);
         let played = self.shared.with(|session| {
+            let rig = session.game().world_from_tracking();
+            let arms = attention
+                .is_present(focus)
+                .then(|| participant.arms(&readings, rig))
+                .flatten();
+            let wish = around.heed(arms, attention, at);
+            let is_here = attention.is_here(focus);
             let mut input = if is_here {
                 let is_holding = session.game().held().is_some();
                 participant.input(&readings, at, frame.period_s(), is_holding)
             } else {
                 participant.pause(&readings)
             };
+            input.recentre = wish == Some(Wish::Recentre);
             input.press_red |= keys.take_press(Button::Red);
             input.press_blue |= keys.take_press(Button::Blue);
             let held = session.game().held();
@@ -334,7 +356,11 @@ impl Player {
             } else {
                 fading.forget();
             }
-            let pulse = pulses::of(game.events(), held);
+            scene.vignette = convert::vignette(game);
+            let drawn = (&stage.stock, &mut stage.signs, &mut stage.renderer);
+            let more = around.instances(game, arms, attention.is_paused(), drawn)?;
+            scene.instances.extend(more);
+            let pulse = pulses::of(game.events(), held).filter(|_| is_here);
             let happened = Happened::among(game.events());
             Ok((scene, game.world_from_tracking(), pulse, happened))
         })?;
@@ -361,7 +387,10 @@ impl Player {
             headset.skip(frame)?;
             false
         };
-        if let Some(pulse) = pulse.filter(|_| is_here) {
+        if self.attention.is_paused() != was_paused {
+            self.shared.note(json!({ "paused": !was_paused }))?;
+        }
+        if let Some(pulse) = pulse {
             let side = self.participant.throwing();
             headset.pulse(side, pulse.amplitude, pulse.seconds)?;
         }

@@ -4,6 +4,7 @@
 //! [`experiment::journal`]'s; here is what they mean.
 
 mod changes;
+pub mod older;
 mod read;
 pub mod settings;
 mod write;
@@ -62,7 +63,11 @@ pub struct Header {
     pub scene: String,
     /// Resolved settings of the room and of both conditions; a study keeps them with its plan instead, because they
     /// would tell which condition is which.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(
+        default,
+        skip_serializing_if = "Option::is_none",
+        deserialize_with = "older::of_header"
+    )]
     pub conditions: Option<Conditions>,
     /// In a study: the salted SHA-256 of the settings, which tells that the plan's are those that were played.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -109,13 +114,14 @@ pub fn hash_text(hash: u64) -> String {
 
 /// One input as an array: steps, buttons, trigger, head, hand, and the trigger's last change where it is known.
 ///
-/// Buttons are a sum: 1 walk forward, 2 walk back, 4 Red, 8 Blue, 16 Red locked, 32 Blue locked, 64 a new tracking space.
+/// Buttons are a sum: 1 walk forward, 2 walk back, 4 Red, 8 Blue, 16 Red locked, 32 Blue locked, 64 a new tracking space, 128 paused,
+/// 256 back to the start.
 /// Head and hand are `null` when not tracked, else position, rotation (x, y, z, w) and, when measured, linear and angular
 /// velocity. The change is its age in seconds and the hand then; it is left out where there is none.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct InputLine(
     u32,
-    u8,
+    u16,
     f64,
     Option<TrackedLine>,
     Option<TrackedLine>,
@@ -139,11 +145,13 @@ impl From<&Input> for InputLine {
             input.locked[0],
             input.locked[1],
             input.recentred,
+            input.paused,
+            input.recentre,
         ];
         let sum = buttons
             .iter()
             .enumerate()
-            .map(|(bit, pressed)| u8::from(*pressed) << bit)
+            .map(|(bit, pressed)| u16::from(*pressed) << bit)
             .sum();
         let (head, hand) = (input.head.as_ref(), input.hand.as_ref());
         InputLine(
@@ -162,7 +170,7 @@ impl From<&Input> for InputLine {
 impl From<&InputLine> for Input {
     fn from(line: &InputLine) -> Self {
         let InputLine(steps, buttons, trigger, head, hand, change) = line;
-        let pressed = |bit: u8| buttons & (1 << bit) != 0;
+        let pressed = |bit: u16| buttons & (1 << bit) != 0;
         Input {
             head: head.as_ref().map(Tracked::from),
             hand: hand.as_ref().map(Tracked::from),
@@ -173,6 +181,8 @@ impl From<&InputLine> for Input {
             press_blue: pressed(3),
             locked: [pressed(4), pressed(5)],
             recentred: pressed(6),
+            paused: pressed(7),
+            recentre: pressed(8),
             steps: *steps,
             trigger_change: change.as_deref().map(|(age_s, hand)| TriggerChange {
                 age_s: *age_s,
@@ -249,13 +259,15 @@ mod tests {
             press_blue: true,
             locked: [false, true],
             recentred: true,
+            paused: true,
+            recentre: true,
             steps: 8,
             trigger_change: None,
         };
         let text = serde_json::to_string(&InputLine::from(&input)).expect("plain numbers");
         let line: InputLine = serde_json::from_str(&text).expect("just written");
         assert_eq!(Input::from(&line), input);
-        assert!(text.starts_with("[8,105,0.30000000000000004,["), "{text}");
+        assert!(text.starts_with("[8,489,0.30000000000000004,["), "{text}");
         let changed = Input {
             trigger_change: Some(TriggerChange {
                 age_s: 0.1 / 3.0,

@@ -15,6 +15,7 @@ use physics::Pose;
 use renderer::{Gpu, Instance, Material, MeshData, MeshId, Renderer, TextPainter, TextureId};
 
 use crate::session::Session;
+use crate::words::Words;
 pub use layout::Choice;
 use layout::{Content, Layout};
 use stop::StopSign;
@@ -51,6 +52,7 @@ pub struct Panel {
     shown: Option<Shown>,
     stop: StopSign,
     is_pulled: bool,
+    words: Words,
 }
 
 #[derive(Debug)]
@@ -64,13 +66,14 @@ struct Shown {
 }
 
 impl Panel {
-    /// Nothing yet; answers will have been given in `answered_in`.
-    pub fn new(answered_in: AnsweredIn) -> Self {
+    /// Nothing yet; answers will have been given in `answered_in`, and the labels are in these words.
+    pub fn new(answered_in: AnsweredIn, words: Words) -> Self {
         Self {
             answered_in,
             shown: None,
             stop: StopSign::default(),
             is_pulled: false,
+            words,
         }
     }
 
@@ -79,7 +82,7 @@ impl Panel {
     /// # Errors
     /// When the journal cannot be written.
     pub fn attend(&mut self, session: &mut Session) -> Result<()> {
-        let (content, pointing) = (content(session), session.pointing());
+        let (content, pointing) = (content(session, &self.words), session.pointing());
         self.stop.attend(session, pointing)?;
         self.show(content, pointing.map(|pointing| pointing.head));
         let (Some(shown), Some(pointing)) = (&mut self.shown, pointing) else {
@@ -113,13 +116,13 @@ impl Panel {
         match &mut self.shown {
             Some(shown) if shown.content == content => {}
             Some(shown) => {
-                shown.layout = Layout::of(&content);
+                shown.layout = Layout::of(&content, &self.words.panel);
                 shown.content = content;
             }
             None => {
                 // Who is not tracked gets it later.
                 self.shown = head.map(|head| Shown {
-                    layout: Layout::of(&content),
+                    layout: Layout::of(&content, &self.words.panel),
                     content,
                     pose: before(head),
                     at: None,
@@ -148,7 +151,7 @@ impl Panel {
 }
 
 /// What is to be read now.
-fn content(session: &Session) -> Option<Content> {
+fn content(session: &Session, words: &Words) -> Option<Content> {
     let course = session.course()?;
     if let Some(form) = session.form()
         && let Some(item) = form.current()
@@ -164,9 +167,7 @@ fn content(session: &Session) -> Option<Content> {
             let count = course.staircase_plan().map_or(number, |plan| plan.trials);
             Some(Content::Pair(number, count))
         }
-        Place::Debriefing => Some(Content::Words(
-            "Thank you. You can take the headset off; the experimenter tells you more.".to_owned(),
-        )),
+        Place::Debriefing => Some(Content::Words(words.panel.thanks.clone())),
         _ => None,
     }
 }
@@ -208,7 +209,7 @@ fn pixel(panel: &Pose, eye: DVec3, hand: DVec3) -> Option<DVec2> {
 
 /// Where the line from the eye through the hand meets a board of `size` [m], from its upper left corner, each side 1; `None`
 /// beside it.
-fn share(panel: &Pose, size: DVec2, eye: DVec3, hand: DVec3) -> Option<DVec2> {
+pub(crate) fn share(panel: &Pose, size: DVec2, eye: DVec3, hand: DVec3) -> Option<DVec2> {
     let [eye, hand] = [eye, hand].map(|point| panel.inverse().transform_point(point));
     let way = hand - eye;
     // The panel faces +z: who points at it looks along -z.
@@ -237,11 +238,11 @@ impl PanelStock {
     ///
     /// # Errors
     /// When the renderer does not take it.
-    pub fn new(gpu: &Gpu, renderer: &mut Renderer) -> Result<Self> {
+    pub fn new(gpu: &Gpu, renderer: &mut Renderer, words: &Words) -> Result<Self> {
         let size = SIZE_M.as_vec2();
         let stop_size = stop::SIZE_M.as_vec2();
         let mut painter = TextPainter::new(gpu);
-        let sign = paint::stop_sign(&mut painter)?;
+        let sign = paint::stop_sign(&mut painter, &words.stop_sign)?;
         Ok(Self {
             painter,
             stop: (
@@ -273,7 +274,12 @@ impl PanelStock {
             return Ok(instances);
         };
         if self.painted.as_ref() != Some(&shown.content) {
-            let image = paint::paint(&mut self.painter, &shown.content, &shown.layout)?;
+            let image = paint::paint(
+                &mut self.painter,
+                &shown.content,
+                &shown.layout,
+                &panel.words.panel,
+            )?;
             renderer.update_texture(self.texture, &image)?;
             self.painted = Some(shown.content.clone());
         }
@@ -306,6 +312,20 @@ fn picture(texture: TextureId) -> Material {
 fn placed(pose: &Pose, offset: Vec3) -> Mat4 {
     let rotation: Quat = pose.rotation.as_quat().normalize();
     Mat4::from_rotation_translation(rotation, pose.position.as_vec3() + rotation * offset)
+}
+
+/// Texts of panel and stop sign: size of the letters and distance from which they are read, from the start at `eye` [m].
+#[cfg(test)]
+pub(crate) fn letters(config: &game::Config, eye: DVec3) -> [(&'static str, f64, f64); 4] {
+    let panel = |pixels: f32| f64::from(pixels) * SIZE_M.x / f64::from(layout::SIZE_PX.x);
+    let sign = f64::from(paint::STOP_HOW_PX) * stop::SIZE_M.x / f64::from(paint::STOP_SIZE_PX.x);
+    let to_sign = stop::over(config).position.distance(eye);
+    [
+        ("a question", panel(paint::QUESTION_PX), DISTANCE_M),
+        ("an answer", panel(paint::ANSWER_PX), DISTANCE_M),
+        ("small print", panel(paint::SMALL_PX), DISTANCE_M),
+        ("the stop sign", sign, to_sign),
+    ]
 }
 
 #[cfg(test)]

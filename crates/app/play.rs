@@ -16,9 +16,11 @@ use crate::devices::script::{Script, Velocities};
 use crate::headset;
 use crate::output;
 use crate::pictures::{Painter, Wanted};
+use crate::practice;
 use crate::rehearsal;
 use crate::session::{Keep, Session, Setup, Summary};
 use crate::window;
+use crate::words::Words;
 
 /// Scene when none is asked for.
 const DEFAULT_SCENE: &str = "alley";
@@ -33,11 +35,28 @@ pub fn play(arguments: &PlayArguments, root: &Path) -> Result<()> {
         .scene
         .clone()
         .unwrap_or_else(|| DEFAULT_SCENE.to_owned());
-    let mut settings = arguments.settings.clone();
+    // Mouse and script have no body to measure; who wants the gesture there says so.
+    let mut settings = match choice {
+        Choice::Headset => Vec::new(),
+        _ => vec!["calibration.gesture=false".to_owned()],
+    };
+    settings.extend_from_slice(&arguments.settings);
     if let Some(display) = arguments.display {
         settings.push(format!("display.profile=\"{}\"", display.name()));
     }
-    let conditions = Conditions::load(&root.join("config"), &scene, &settings)?;
+    if let Some(words) = &arguments.words {
+        settings.push(format!(
+            "guidance.words={}",
+            toml::Value::from(words.as_str())
+        ));
+    }
+    let mut conditions = Conditions::load(&root.join("config"), &scene, &settings)?;
+    if arguments.practice {
+        settings.extend(practice::settings(arguments, &conditions)?);
+        conditions = Conditions::load(&root.join("config"), &scene, &settings)?;
+    }
+    // Before anything is opened: words that are not whole must not stop a session later.
+    Words::load(root, &conditions.lobby)?;
     let folder = arguments
         .out
         .clone()
@@ -104,12 +123,7 @@ fn offscreen(setup: Setup, root: &Path, wanted: Wanted) -> Result<()> {
     // Before anything is written: a missing driver or asset must not cost a game.
     let stop = interruption()?;
     let painter = Painter::new(root, &setup.conditions.lobby)?.stopped_by(Arc::clone(&stop));
-    let mut script = Script::new(
-        &setup.conditions.lobby,
-        setup.seed,
-        Velocities::Measured,
-        &Button::BOTH,
-    );
+    let mut script = scripted(&setup);
     let frames = setup.frames;
     let started = Instant::now();
     let mut session = Session::start(setup)?;
@@ -128,6 +142,17 @@ fn offscreen(setup: Setup, root: &Path, wanted: Wanted) -> Result<()> {
         started.elapsed().as_secs_f64() - simulated_in
     );
     Ok(())
+}
+
+/// The scripted participant of a session: both games, or a throw for each frame of practice.
+pub fn scripted(setup: &Setup) -> Script {
+    let config = &setup.conditions.lobby;
+    let (games, throws) = if config.practice.only {
+        (Vec::new(), setup.frames)
+    } else {
+        setup.keep.script()
+    };
+    Script::new(config, setup.seed, Velocities::Measured, &games).practising(throws)
 }
 
 fn simulate(

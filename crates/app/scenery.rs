@@ -3,12 +3,13 @@
 //! The settings move the physics, so they make the pictures too. What the physics has as plain boxes (rack, desk, kickbacks,
 //! foul line) is drawn as those boxes; here is what is round, painted, or only looked at.
 
-mod furnishings;
+pub(crate) mod furnishings;
 pub mod hand;
 mod lane;
 mod markings;
 pub mod mesh;
 mod neighbours;
+pub mod oil;
 mod room;
 
 use game::Config;
@@ -116,6 +117,8 @@ pub enum Surface {
     Lane,
     /// The approach's boards.
     Approach,
+    /// Oil on the boards, where it is shown: from 1 to the most that there is.
+    Oil(u8),
     /// Arrows, dots and pin spots.
     Markings,
     /// Both gutters.
@@ -175,6 +178,9 @@ pub fn meshes(config: &Config) -> Vec<(Surface, Mesh)> {
     ];
     if plan.has_furnishings {
         meshes.extend(furnishings::meshes(&plan));
+    }
+    if config.practice.shows_lane {
+        meshes.extend(oil::meshes(config));
     }
     meshes.retain(|(_, mesh)| !mesh.triangles.is_empty());
     meshes

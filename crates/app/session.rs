@@ -172,6 +172,8 @@ impl Session {
         let mut input = self.boundary.admit(input);
         if let Some(course) = &self.course {
             input.locked = course.protocol().locked();
+        } else if self.game.config().practice.only {
+            input.locked = [true; 2];
         }
         self.lay_out()?;
         self.trigger = input.trigger;

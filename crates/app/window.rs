@@ -27,14 +27,19 @@ use crate::choose::Choice;
 use crate::convert::{self, Stock};
 use crate::devices::desk::Desk;
 use crate::devices::gamepad::Gamepads;
-use crate::devices::script::{Script, Velocities};
+use crate::devices::script::Script;
 use crate::devices::{Device, LONGEST_CATCH_UP_S};
+use crate::fence::{self, Space};
+use crate::labels;
 use crate::panel::{Panel, PanelStock};
 use crate::pictures::{Painter, Wanted};
 use crate::play::{self, Progress};
+use crate::practice::Track;
 use crate::session::{Session, Setup};
+use crate::signs::SignStock;
 use crate::sound::Ears;
 use crate::study::attendant::Attendant;
+use crate::words::Words;
 use aside::Aside;
 use cost::Meter;
 use keys::{Command, Keys};
@@ -112,9 +117,7 @@ impl Player {
     fn new(setup: &Setup, choice: Choice) -> Self {
         let config = &setup.conditions.lobby;
         if choice == Choice::ScriptWindow {
-            let (games, training) = setup.keep.script();
-            let script = Script::new(config, setup.seed, Velocities::Measured, &games);
-            return Self::Script(Box::new(script.practising(training)));
+            return Self::Script(Box::new(play::scripted(setup)));
         }
         let steps = (config.physics.step_hz / setup.rate_hz).round() as u32;
         let desk = Desk::new(config.participant.eye_height_m, steps, 1.0 / setup.rate_hz);
@@ -144,6 +147,9 @@ struct Stage {
     overlay: Overlay,
     panel: Panel,
     panel_stock: PanelStock,
+    signs: SignStock,
+    track: Track,
+    words: Words,
     meter: Meter,
     keys: Keys,
     session: Session,
@@ -173,8 +179,9 @@ impl Shell {
         let Some(setup) = self.setup.take() else {
             return Ok(());
         };
+        let words = Words::load(&self.root, &setup.conditions.lobby)?;
         let attributes = Window::default_attributes()
-            .with_title("Bowling")
+            .with_title(&words.window.title)
             .with_inner_size(LogicalSize::new(SIZE.0, SIZE.1));
         let window = events
             .create_window(attributes)
@@ -187,8 +194,13 @@ impl Shell {
         let mut stock = Stock::load(&mut renderer, &self.root, config)?;
         stock.add_screen(&mut renderer, &self.root, config)?;
         let again = Again::of(config);
-        let overlay = Overlay::new(TextPainter::new(&gpu));
-        let panel_stock = PanelStock::new(&gpu, &mut renderer)?;
+        let overlay = Overlay::new(
+            TextPainter::new(&gpu),
+            words.clone(),
+            setup.conditions.lobby.practice.only,
+        );
+        let panel_stock = PanelStock::new(&gpu, &mut renderer, &words)?;
+        let signs = SignStock::new(&gpu, &mut renderer)?;
         // Last: nothing is written before everything else works.
         let mut session = Session::start(setup)?;
         let ears = Ears::open(session.game().config());
@@ -213,8 +225,11 @@ impl Shell {
             renderer,
             stock,
             overlay,
-            panel: Panel::new(AnsweredIn::Desk),
+            panel: Panel::new(AnsweredIn::Desk, words.clone()),
             panel_stock,
+            signs,
+            track: Track::default(),
+            words,
             meter: Meter::new(),
             keys: Keys::default(),
             session,
@@ -251,6 +266,7 @@ impl Shell {
             if let Some(again) = &mut stage.again {
                 again.notice(stage.session.game());
             }
+            stage.track.notice(stage.session.game());
         }
         stage.ears.hear(stage.session.game());
         stage.simulated += Duration::from_secs_f64(f64::from(count) * self.frame_s);
@@ -338,10 +354,18 @@ impl Stage {
         self.stock
             .show_again(again.and_then(|again| again.at(game.time())))?;
         let mut scene = convert::scene(visible.iter(), &self.stock, convert::HandShape::of(game));
+        scene.vignette = convert::vignette(game);
         let panel = self
             .panel_stock
             .instances(&self.panel, &mut self.renderer)?;
         scene.instances.extend(panel);
+        let signs = labels::signs(game, &self.words);
+        let signs = self.signs.instances(&signs, &mut self.renderer)?;
+        scene.instances.extend(signs);
+        scene.instances.extend(self.track.instances(&self.stock));
+        let space = Space::of_settings(game.config().comfort.space_m);
+        let fence = fence::instances(game, space.as_ref(), &[], &self.stock);
+        scene.instances.extend(fence);
         let (position, rotation) = game
             .head_pose_world()
             .map_or((SPECTATOR, DQuat::IDENTITY), |head| {

@@ -7,6 +7,7 @@ use std::process::Command;
 use bowling_app::panel::{Choice, Panel};
 use bowling_app::session::Session;
 use bowling_app::study::seat::{self, Guest};
+use bowling_app::words::Words;
 use experiment::protocol::AnsweredIn;
 use experiment::questionnaire::{Act, Answer};
 use experiment::study::Study;
@@ -58,7 +59,7 @@ impl Twin {
         let setup = seat::setup(&study, &lock, guest, root).expect("the shipped settings");
         let mut twin = Self {
             session: Session::start(setup).expect("a session"),
-            panel: Panel::new(AnsweredIn::Headset),
+            panel: Panel::new(AnsweredIn::Headset, Words::shipped()),
         };
         let input = Input {
             head: Some(head),

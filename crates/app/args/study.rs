@@ -102,6 +102,23 @@ pub struct PlanArguments {
     /// Let a press of a button that is not due start its game instead of refusing it.
     #[arg(long)]
     pub allow_undue_presses: bool,
+
+    /// Help that participants have besides the training [default: none].
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "WHAT,..")]
+    pub guidance: Vec<GuidanceChoice>,
+}
+
+/// What may help a participant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum GuidanceChoice {
+    /// What the hand could take glows.
+    Glow,
+    /// Hints until the first throw is over.
+    Hints,
+    /// How a ball was let go, on the scoreboard.
+    Feedback,
+    /// One gesture measures height and reach, and places what must be reached.
+    Calibration,
 }
 
 /// What a study of differences compares.

@@ -279,6 +279,23 @@ fn span_of(
     }
 }
 
+/// At least one pin to throw at.
+pub(super) fn leave(text: &str) -> Result<PinNumbers, String> {
+    let pins = pin_numbers(text)?;
+    if pins.0.is_empty() {
+        return Err("leave at least one pin to throw at, as 7,10".to_owned());
+    }
+    Ok(pins)
+}
+
+/// A ball's weight: 6 to 16 pounds are made.
+pub(super) fn ball_kg(text: &str) -> Result<f64, String> {
+    match text.trim().parse() {
+        Ok(kilograms) if (2.7..=7.26).contains(&kilograms) => Ok(kilograms),
+        _ => Err("a bowling ball weighs from 2.7 to 7.26 kilograms".to_owned()),
+    }
+}
+
 fn pin_numbers(text: &str) -> Result<PinNumbers, String> {
     if text == "none" {
         return Ok(PinNumbers(Vec::new()));

@@ -1,15 +1,22 @@
-//! The scoreboard over the lane: both games, painted by egui into a texture whenever they change.
+//! The scoreboard over the lane: both games and how the last ball was let go, painted by egui into a texture whenever they change.
 
 use anyhow::Result;
-use game::{Button, Game, ScoreSheet};
+use game::{Button, Game, ScoreSheet, ThrowSeen};
 use renderer::egui::{self, Align2, Color32, FontId, Pos2, Rect, Stroke, StrokeKind, Vec2};
 use renderer::{Gpu, Renderer, RgbaImage, TextPainter, TextureId};
 
-/// Size of the picture [pixels]: three to one, as the screen is.
-const SIZE: [u32; 2] = [1024, 341];
+use crate::words::{Words, fill};
+
+/// Size of the picture [pixels]; its shape is the screen's.
+pub(crate) const SIZE: [u32; 2] = [1160, 512];
 const GROUND: [u8; 4] = [10, 14, 28, 255];
 const INK: Color32 = Color32::from_rgb(236, 240, 248);
-const FAINT: Color32 = Color32::from_rgb(96, 112, 146);
+const FAINT: Color32 = Color32::from_rgb(140, 154, 186);
+/// Letters of figures, and of what is read word by word [pixels].
+pub(crate) const FIGURE_PX: f32 = 44.0;
+pub(crate) const WORD_PX: f32 = 57.0;
+/// Height of one game's row [pixels].
+const ROW: f32 = 166.0;
 
 /// One game on the board.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,19 +34,22 @@ pub struct Scores {
     rows: [Row; 2],
     /// Help that throws get [percent]; what is not studied must not be had unseen.
     assist: u32,
+    throw: Option<ThrowSeen>,
 }
 
 impl Scores {
-    /// The sheets of a game as they stand.
+    /// The sheets of a game as they stand, and its last throw where the settings let a participant know.
     pub fn of(game: &Game) -> Self {
         let rows = Button::BOTH.map(|button| {
             let is_playing = game.playing() == Some(button);
             Row::of(button, game.score_sheet(button), is_playing)
         });
         let share = game.config().release.assist_share;
+        let tells = game.config().guidance.feedback;
         Self {
             rows,
             assist: (100.0 * share).ceil() as u32,
+            throw: game.last_throw().filter(|_| tells),
         }
     }
 
@@ -48,6 +58,7 @@ impl Scores {
         Self {
             rows: Button::BOTH.map(|button| Row::of(button, &ScoreSheet::new(frames), false)),
             assist: 0,
+            throw: None,
         }
     }
 }
@@ -82,6 +93,7 @@ pub(super) struct Board {
     texture: TextureId,
     painter: TextPainter,
     shown: Scores,
+    words: Words,
 }
 
 impl std::fmt::Debug for Board {
@@ -95,14 +107,15 @@ impl std::fmt::Debug for Board {
 
 impl Board {
     /// A board with nothing on it yet.
-    pub fn new(renderer: &mut Renderer, gpu: &Gpu) -> Result<Self> {
+    pub fn new(renderer: &mut Renderer, gpu: &Gpu, words: Words) -> Result<Self> {
         let mut painter = TextPainter::new(gpu);
         let shown = Scores::empty(game::MAX_FRAMES);
-        let image = paint(&mut painter, &shown)?;
+        let image = paint(&mut painter, &shown, &words)?;
         Ok(Self {
             texture: renderer.add_texture(&image)?,
             painter,
             shown,
+            words,
         })
     }
 
@@ -115,59 +128,76 @@ impl Board {
         if *scores == self.shown {
             return Ok(());
         }
-        let image = paint(&mut self.painter, scores)?;
+        let image = paint(&mut self.painter, scores, &self.words)?;
         renderer.update_texture(self.texture, &image)?;
         self.shown = scores.clone();
         Ok(())
     }
 }
 
-fn paint(painter: &mut TextPainter, scores: &Scores) -> Result<RgbaImage> {
+fn paint(painter: &mut TextPainter, scores: &Scores, words: &Words) -> Result<RgbaImage> {
     let [width, height] = SIZE;
     let image = painter.paint(width, height, GROUND, |ui| {
         let painter = ui.ctx().debug_painter();
-        let half = 0.5 * height as f32;
-        for (row, top) in scores.rows.iter().zip([0.0, half]) {
+        for (row, top) in scores.rows.iter().zip([0.0, ROW]) {
             let area = Rect::from_min_size(
-                Pos2::new(12.0, top + 10.0),
-                Vec2::new(width as f32 - 24.0, half - 20.0),
+                Pos2::new(12.0, top + 8.0),
+                Vec2::new(width as f32 - 24.0, ROW - 12.0),
             );
-            paint_row(&painter, row, area);
+            paint_row(&painter, row, words.button(row.button), area);
+        }
+        let below = 2.0 * ROW + 0.25 * (height as f32 - 2.0 * ROW);
+        for (line, text) in told(scores.throw, words).into_iter().enumerate() {
+            let middle = below + 0.5 * (height as f32 - 2.0 * ROW) * line as f32;
+            let at = Pos2::new(30.0, middle);
+            write(&painter, at, Align2::LEFT_CENTER, &text, WORD_PX, INK);
         }
         if scores.assist > 0 {
-            let text = format!("throws are helped: {} %", scores.assist);
-            let at = Pos2::new(0.5 * width as f32, half);
-            painter.text(
-                at,
-                Align2::CENTER_CENTER,
-                text,
-                FontId::proportional(18.0),
-                INK,
-            );
+            let text = fill(&words.board.assist, &[("percent", &scores.assist)]);
+            let at = Pos2::new(width as f32 - 18.0, below);
+            write(&painter, at, Align2::RIGHT_CENTER, &text, WORD_PX, INK);
         }
     })?;
     Ok(image)
 }
 
-/// Sign and name, a cell for each frame with its marks over its score, and the total.
-fn paint_row(painter: &egui::Painter, row: &Row, area: Rect) {
-    let name_width = 150.0;
+/// How the last ball was let go, in two lines.
+fn told(throw: Option<ThrowSeen>, words: &Words) -> Vec<String> {
+    let Some(throw) = throw else {
+        return Vec::new();
+    };
+    let board = &words.board;
+    let degrees = throw.angle.to_degrees();
+    let side = if degrees < 0.0 {
+        &board.left
+    } else {
+        &board.right
+    };
+    let line = if throw.is_foul {
+        &board.over
+    } else {
+        &board.behind
+    };
+    let speed = fill(&board.speed, &[("speed", &format!("{:.1}", throw.speed))]);
+    let angle = fill(side, &[("angle", &format!("{:.1}", degrees.abs()))]);
+    let turns = format!("{:.0}", 60.0 * throw.turns);
+    let turns = fill(&board.turns, &[("turns", &turns)]);
+    vec![format!("{speed}, {angle}"), format!("{turns}, {line}")]
+}
+
+fn write(painter: &egui::Painter, at: Pos2, align: Align2, text: &str, size: f32, color: Color32) {
+    painter.text(at, align, text, FontId::proportional(size), color);
+}
+
+/// Sign and name, a cell for each frame with its number, marks and score, and the total.
+fn paint_row(painter: &egui::Painter, row: &Row, name: &str, area: Rect) {
+    let name_width = 190.0;
     let total_width = 110.0;
     let middle = area.center().y;
-    row.sign(painter, Pos2::new(area.left() + 30.0, middle), 22.0);
-    let write = |at: Pos2, align: Align2, text: &str, size: f32, color: Color32| {
-        painter.text(at, align, text, FontId::proportional(size), color);
-    };
-    let name = Pos2::new(area.left() + 62.0, middle);
-    write(
-        name,
-        Align2::LEFT_CENTER,
-        &row.button.to_string(),
-        34.0,
-        INK,
-    );
-    let cells = area.width() - name_width - total_width;
-    let wide = cells / row.frames as f32;
+    row.sign(painter, Pos2::new(area.left() + 26.0, middle), 22.0);
+    let at = Pos2::new(area.left() + 56.0, middle);
+    write(painter, at, Align2::LEFT_CENTER, name, WORD_PX, INK);
+    let wide = (area.width() - name_width - total_width) / row.frames as f32;
     for frame in 0..row.frames {
         let left = area.left() + name_width + wide * frame as f32;
         let cell = Rect::from_min_size(Pos2::new(left, area.top()), Vec2::new(wide, area.height()));
@@ -179,24 +209,50 @@ fn paint_row(painter: &egui::Painter, row: &Row, area: Rect) {
             Stroke::new(2.0, edge),
             StrokeKind::Inside,
         );
-        let number = Pos2::new(cell.left() + 8.0, cell.top() + 6.0);
-        write(
-            number,
-            Align2::LEFT_TOP,
-            &(frame + 1).to_string(),
-            17.0,
-            FAINT,
-        );
+        let third = |number: f32| Pos2::new(cell.center().x, cell.top() + number * cell.height());
+        let figure = |at: Pos2, text: &str, color| {
+            write(painter, at, Align2::CENTER_CENTER, text, FIGURE_PX, color);
+        };
+        figure(third(0.19), &(frame + 1).to_string(), FAINT);
         if let Some(marks) = row.marks.get(frame as usize) {
-            let at = Pos2::new(cell.center().x, cell.top() + 0.42 * cell.height());
-            write(at, Align2::CENTER_CENTER, marks, 32.0, INK);
+            figure(third(0.5), marks, INK);
         }
         if let Some(Some(score)) = row.scores.get(frame as usize) {
-            let at = Pos2::new(cell.center().x, cell.bottom() - 0.2 * cell.height());
-            write(at, Align2::CENTER_CENTER, &score.to_string(), 30.0, INK);
+            figure(third(0.81), &score.to_string(), INK);
         }
     }
     let total = row.scores.iter().flatten().last().copied().unwrap_or(0);
     let at = Pos2::new(area.right() - 6.0, middle);
-    write(at, Align2::RIGHT_CENTER, &total.to_string(), 56.0, INK);
+    write(
+        painter,
+        at,
+        Align2::RIGHT_CENTER,
+        &total.to_string(),
+        WORD_PX,
+        INK,
+    );
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_throw_is_told_in_two_lines() {
+        let throw = ThrowSeen {
+            speed: 6.84,
+            angle: -0.02,
+            turns: 3.1,
+            is_foul: true,
+        };
+        let lines = told(Some(throw), &Words::shipped());
+        assert_eq!(
+            lines,
+            [
+                "6.8 m/s, 1.1° to the left",
+                "186 turns a minute, over the line: foul"
+            ]
+        );
+        assert!(told(None, &Words::shipped()).is_empty());
+    }
 }

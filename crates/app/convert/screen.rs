@@ -12,10 +12,10 @@ use super::{HandShape, Stock, scene, settings};
 use crate::again::Moment;
 use crate::scenery;
 
-/// Size of its picture [pixels]: three to one, as the screen is.
-const SIZE: [u32; 2] = [768, 256];
+/// Size of its picture [pixels]; its shape is the screen's.
+const SIZE: [u32; 2] = [768, 340];
 /// Vertical field of view [rad].
-const FIELD: f32 = 0.77;
+const FIELD: f32 = 0.98;
 /// Where its camera is: so far behind the deck and above the lane [m], in front of the cushion; and how far before the head pin's spot
 /// it looks at the lane. All pins are in the picture, and the ball's last three metres.
 const BEHIND_M: f32 = 0.8;

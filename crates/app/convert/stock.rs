@@ -17,7 +17,8 @@ use super::hand::Hands;
 use super::light::{lamps, light};
 use super::screen::Screen;
 use crate::again::Moment;
-use crate::scenery::{self, mesh};
+use crate::scenery::{self, Surface, mesh};
+use crate::words::Words;
 use looks::Looks;
 pub(super) use looks::plain;
 
@@ -47,6 +48,7 @@ impl Piece {
 pub struct Stock {
     /// What never moves, where it is.
     pub(super) scenery: Vec<Instance>,
+    pub(super) rack_stand: RackStand,
     /// A pin, and the bands of one that has no texture.
     pub(super) pin: Vec<Piece>,
     pub(super) ball: MeshId,
@@ -63,6 +65,28 @@ pub struct Stock {
     pub(super) shows: ShowsConfig,
     board: Option<Board>,
     screen: Option<Screen>,
+}
+
+/// The stand under the rack, which follows a rack that was raised or lowered to somebody's reach.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RackStand {
+    /// Its place in the scenery.
+    pub place: Option<usize>,
+    /// Upper edge of the rack's rims, and height of the stand, as the settings have them [m].
+    pub rims: f32,
+    pub height: f32,
+}
+
+impl RackStand {
+    fn of(config: &Config) -> Self {
+        let rack = &config.rack;
+        let is_stand = |(surface, _): &(Surface, mesh::Mesh)| *surface == Surface::RackStand;
+        Self {
+            place: scenery::meshes(config).iter().position(is_stand),
+            rims: (rack.tray_height_m + rack.rim_height_m) as f32,
+            height: (rack.tray_height_m - 0.04) as f32,
+        }
+    }
 }
 
 /// What a renderer has to be able to do for a scene.
@@ -87,7 +111,7 @@ impl Stock {
         let gpu = renderer.gpu().clone();
         let board = shows
             .furnishings
-            .then(|| Board::new(renderer, &gpu))
+            .then(|| Board::new(renderer, &gpu, Words::load(root, config)?))
             .transpose()?;
         let mut assets = Assets {
             renderer,
@@ -104,6 +128,7 @@ impl Stock {
         scenery.extend(neighbours.into_iter().chain(house));
         Ok(Stock {
             scenery,
+            rack_stand: RackStand::of(config),
             pin,
             ball,
             balls,
@@ -160,6 +185,11 @@ impl Stock {
     /// The screen, while it shows something.
     pub(super) fn screen_instance(&self) -> Option<Instance> {
         self.screen.as_ref().and_then(Screen::instance)
+    }
+
+    /// A box from -1 to 1 each way.
+    pub(crate) fn cuboid(&self) -> MeshId {
+        self.cuboid
     }
 
     /// Shows the scores on the board over the lane, where the scene has one.

@@ -46,6 +46,10 @@ pub enum DeskEvent {
     Hold(Hold, bool),
     /// Red or Blue was pressed.
     Press(game::Button),
+    /// Pause, or go on.
+    Pause,
+    /// Back to the start, facing the lane.
+    Recentre,
 }
 
 /// Keys that act while they are held.
@@ -103,6 +107,8 @@ pub struct Desk {
     passed: f64,
     held: [bool; 4],
     pressed: [bool; 2],
+    is_paused: bool,
+    recentre: bool,
     pad: Gamepad,
 }
 
@@ -126,6 +132,8 @@ impl Desk {
             passed: 0.0,
             held: [false; 4],
             pressed: [false; 2],
+            is_paused: false,
+            recentre: false,
             pad: Gamepad::default(),
         }
     }
@@ -142,6 +150,8 @@ impl Desk {
             DeskEvent::Hold(key, down) => self.held[key as usize] = down,
             DeskEvent::Press(game::Button::Red) => self.pressed[0] = true,
             DeskEvent::Press(game::Button::Blue) => self.pressed[1] = true,
+            DeskEvent::Pause => self.is_paused = !self.is_paused,
+            DeskEvent::Recentre => self.recentre = true,
         }
     }
 
@@ -264,7 +274,9 @@ impl Desk {
             press_blue,
             locked: [false; 2],
             recentred: false,
-            steps: self.steps,
+            paused: self.is_paused,
+            recentre: std::mem::take(&mut self.recentre),
+            steps: if self.is_paused { 0 } else { self.steps },
             trigger_change: None,
         }
     }
@@ -370,6 +382,21 @@ mod tests {
         let presses: Vec<bool> = inputs.iter().map(|i| i.press_blue).collect();
         assert_eq!(presses, [true, false, false]);
         assert!(inputs.iter().all(|i| !i.press_red));
+    }
+
+    #[test]
+    fn a_pause_lasts_until_the_key_is_pressed_again() {
+        let mut desk = desk();
+        let mut take = |event: Option<DeskEvent>| {
+            event.into_iter().for_each(|event| desk.handle(event));
+            let input = desk.take();
+            (input.paused, input.steps, input.recentre)
+        };
+        assert_eq!(take(None), (false, 8, false));
+        assert_eq!(take(Some(DeskEvent::Pause)), (true, 0, false));
+        assert_eq!(take(Some(DeskEvent::Recentre)), (true, 0, true));
+        assert_eq!(take(None), (true, 0, false));
+        assert_eq!(take(Some(DeskEvent::Pause)), (false, 8, false));
     }
 
     #[test]

@@ -6,6 +6,7 @@ use physics::Pose;
 use renderer::headset::{Change, HandReading, Readings, Side, TrackedPose};
 
 use super::LONGEST_CATCH_UP_S;
+use crate::wrist::Arms;
 
 /// A hand that closes further than this takes over from one that is open.
 const TAKES_OVER: f64 = 0.5;
@@ -66,6 +67,7 @@ impl Participant {
         self.played_ns = None;
         Input {
             head: readings.head.map(tracked),
+            paused: true,
             ..Input::default()
         }
     }
@@ -117,6 +119,8 @@ impl Participant {
             press_blue: chooses && choosing.blue,
             locked: [false; 2],
             recentred,
+            paused: false,
+            recentre: false,
             steps: self.due(display_ns, period_s),
             // Where the hand was before is told in a space that is no more.
             trigger_change: change
@@ -143,6 +147,22 @@ impl Participant {
     pub fn fingers(&self, readings: &Readings) -> Option<(Fingers, bool)> {
         let bare = readings.hands[self.throwing as usize].bare?;
         Some((Fingers::tracked(&bare.bends), self.throwing == Side::Left))
+    }
+
+    /// Head and hands in the room: the panel hangs at the hand that does not play, where it is tracked, and the other points at it.
+    pub fn arms(&self, readings: &Readings, world_from_tracking: Pose) -> Option<Arms> {
+        let placed = |pose: TrackedPose| world_from_tracking * tracked(pose).pose;
+        let hands = readings.hands.map(in_use);
+        let hand = |side: Side| hands[side as usize].grip.map(placed);
+        let (playing, other) = (hand(self.throwing), hand(self.throwing.other()));
+        let trigger = closure(&hands[self.throwing as usize]);
+        Some(Arms {
+            head: placed(readings.head?),
+            wrist: other.or(playing)?,
+            pointer: playing
+                .filter(|_| other.is_some())
+                .map(|hand| (hand, trigger)),
+        })
     }
 
     /// Whole steps up to the time of display, or less than one beyond it.

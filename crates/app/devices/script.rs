@@ -212,6 +212,8 @@ impl Script {
             press_blue: false,
             locked: [false; 2],
             recentred: false,
+            paused: false,
+            recentre: false,
             steps: self.steps,
             trigger_change: None,
         }
@@ -353,6 +355,6 @@ impl Device for Script {
     }
 
     fn is_done(&self) -> bool {
-        self.games.is_empty() && self.has_finished
+        self.games.is_empty() && self.practice == 0 && self.has_finished
     }
 }

@@ -1,6 +1,6 @@
 //! Whether the participant is here: time passes in the alley, and their hand is in it, only then.
 
-use renderer::headset::{Focus, Note, Readings};
+use renderer::headset::{Focus, Note, Readings, has_menu_button};
 
 /// What keeps a participant from playing, besides the focus that the runtime's session has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,6 +11,8 @@ pub struct Attention {
     is_paused: bool,
     /// Whether a menu button was down in the last frame.
     menu_was_down: bool,
+    /// Whether the controller of each hand has a menu button.
+    has_menu: [bool; 2],
 }
 
 impl Attention {
@@ -20,14 +22,40 @@ impl Attention {
             is_worn: true,
             is_paused: false,
             menu_was_down: false,
+            has_menu: [false; 2],
         }
     }
 
     /// Hears what the runtime says: a headset that is taken off pauses until it is put on again.
     pub fn hear(&mut self, note: &Note) {
-        if let Note::Worn(is_worn) = note {
-            self.is_worn = *is_worn;
+        match note {
+            Note::Worn(is_worn) => self.is_worn = *is_worn,
+            Note::Profile { side, profile } => {
+                self.has_menu[*side as usize] = profile.as_deref().is_some_and(has_menu_button);
+            }
+            _ => {}
         }
+    }
+
+    /// Whether the participant needs a panel at the wrist: to pause where no controller has a button for it, and in a pause.
+    pub fn needs_panel(&self) -> bool {
+        self.is_paused || self.has_menu == [false; 2]
+    }
+
+    /// Whether somebody is there, paused or not, while the session has this focus.
+    pub fn is_present(&self, focus: Focus) -> bool {
+        focus == Focus::Focused && self.is_worn
+    }
+
+    /// The participant has paused by menu button or panel.
+    pub fn is_paused(&self) -> bool {
+        self.is_paused
+    }
+
+    /// Pauses or goes on: whether it is a pause now.
+    pub fn toggle(&mut self) -> bool {
+        self.is_paused ^= true;
+        self.is_paused
     }
 
     /// Begins anew with another session of the runtime; a pause by the menu button lasts.
@@ -41,19 +69,19 @@ impl Attention {
         let is_down = readings.hands.iter().any(|hand| hand.menu);
         let is_press = is_down && !self.menu_was_down;
         self.menu_was_down = is_down;
-        self.is_paused ^= is_press;
-        is_press.then_some(self.is_paused)
+        is_press.then(|| self.toggle())
     }
 
     /// Whether the participant plays, while the session has this focus.
     pub fn is_here(&self, focus: Focus) -> bool {
-        focus == Focus::Focused && self.is_worn && !self.is_paused
+        self.is_present(focus) && !self.is_paused
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use renderer::headset::Side;
 
     fn menu(is_down: bool) -> Readings {
         let mut readings = Readings::default();
@@ -74,6 +102,25 @@ mod tests {
         assert_eq!(here(&attention), [false, false], "nobody has put it on");
         attention.hear(&Note::Worn(true));
         assert_eq!(here(&attention), [true, false]);
+    }
+
+    #[test]
+    fn a_panel_is_needed_where_no_controller_has_a_menu_button_and_in_a_pause() {
+        let mut attention = Attention::new();
+        assert!(attention.needs_panel(), "no controller yet");
+        let profile = |side, name: &str| Note::Profile {
+            side,
+            profile: Some(format!("/interaction_profiles/{name}")),
+        };
+        let index = "valve/index_controller";
+        attention.hear(&profile(Side::Left, index));
+        attention.hear(&profile(Side::Right, index));
+        assert!(attention.needs_panel());
+        attention.hear(&profile(Side::Left, "oculus/touch_controller"));
+        assert!(!attention.needs_panel());
+        assert!(attention.toggle() && attention.needs_panel());
+        assert!(!attention.is_here(Focus::Focused) && attention.is_present(Focus::Focused));
+        assert!(!attention.toggle() && !attention.needs_panel());
     }
 
     #[test]

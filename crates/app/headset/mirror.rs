@@ -22,8 +22,11 @@ use winit::window::{Window, WindowId};
 
 use super::{Shared, Watch};
 use crate::convert::{self, Stock};
+use crate::labels;
+use crate::signs::SignStock;
 use crate::study::board::{Board, WIDTH};
 use crate::study::experimenter;
+use crate::words::Words;
 
 /// Time between two pictures: enough to follow, little beside the headset's.
 const PERIOD: Duration = Duration::from_millis(33);
@@ -69,6 +72,8 @@ struct Stage {
     stock: Stock,
     /// The experimenter's, in a study.
     board: Option<Board>,
+    signs: SignStock,
+    words: Words,
 }
 
 struct Mirror {
@@ -101,11 +106,14 @@ impl Mirror {
         let mut renderer = Renderer::new(&gpu, convert::settings(&self.config.shows))?;
         let mut stock = Stock::load(&mut renderer, &self.root, &self.config)?;
         stock.add_screen(&mut renderer, &self.root, &self.config)?;
+        let signs = SignStock::new(&gpu, &mut renderer)?;
         Ok(Stage {
             target,
             renderer,
             stock,
             board,
+            signs,
+            words: Words::load(&self.root, &self.config)?,
         })
     }
 
@@ -141,14 +149,17 @@ impl Mirror {
                 game.visible(),
                 convert::HandShape::of(game).bent(self.shared.fingers()),
                 convert::Scores::of(game),
+                labels::signs(game, &stage.words),
             ))
         })?;
-        let Some((visible, hand, scores)) = seen else {
+        let Some((visible, hand, scores, signs)) = seen else {
             return Ok(());
         };
         stage.stock.show_scores(&mut stage.renderer, &scores)?;
         stage.stock.show_again(self.shared.again())?;
-        let scene = convert::scene(visible.iter(), &stage.stock, hand);
+        let mut scene = convert::scene(visible.iter(), &stage.stock, hand);
+        let signs = stage.signs.instances(&signs, &mut stage.renderer)?;
+        scene.instances.extend(signs);
         stage
             .target
             .draw(&mut stage.renderer, &scene, &[view])

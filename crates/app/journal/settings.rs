@@ -6,7 +6,7 @@ use anyhow::{Context, Result, bail};
 use experiment::study::{ParticipantId, Study};
 use game::Conditions;
 
-use super::Header;
+use super::{Header, older};
 
 /// The settings that a journal was played with: its own, or those that its study keeps.
 ///
@@ -35,7 +35,9 @@ fn kept(journal: &Path, digest: &str) -> Result<Conditions> {
                 study.plan_folder().display()
             )
         })?;
-    serde_json::from_str(&text).context("settings that a study keeps cannot be understood")
+    serde_json::from_str(&text)
+        .and_then(older::conditions)
+        .context("settings that a study keeps cannot be understood")
 }
 
 /// The study that a journal lies in, and whose session it is.

@@ -4,6 +4,8 @@ use experiment::questionnaire::{Answer, Item, Kind, SCALE_STEPS};
 use experiment::staircase::Reply;
 use glam::{DVec2, UVec2};
 
+use crate::words::PanelWords;
+
 /// Size of the picture [pixels]: 640 per metre, more than a headset shows at 2 m.
 pub const SIZE_PX: UVec2 = UVec2::new(1024, 640);
 
@@ -72,22 +74,24 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// The layout of some content.
-    pub fn of(content: &Content) -> Self {
+    /// The layout of some content, its fixed labels in these words.
+    pub fn of(content: &Content, words: &PanelWords) -> Self {
         let mut areas = Vec::new();
         match content {
             Content::Item { item, .. } => {
-                areas.extend(answers(item));
-                areas.extend(foot());
+                areas.extend(answers(item, words));
+                areas.extend(foot(words));
             }
             Content::Pair(..) => {
-                let replies = [("Same", Reply::Same), ("Different", Reply::Different)];
-                let choices =
-                    replies.map(|(words, reply)| (words.to_owned(), Choice::Reply(reply)));
+                let replies = [
+                    (words.same.clone(), Reply::Same),
+                    (words.different.clone(), Reply::Different),
+                ];
+                let choices = replies.map(|(words, reply)| (words, Choice::Reply(reply)));
                 areas.extend(row(choices.to_vec()));
                 // A reply cannot be taken back or left out: the next pair depends on it.
                 areas.extend(
-                    foot()
+                    foot(words)
                         .into_iter()
                         .filter(|area| area.choice == Choice::Stop),
                 );
@@ -105,7 +109,7 @@ impl Layout {
 }
 
 /// The boxes of an item's answers: scales and yes or no side by side, options below each other in two columns.
-fn answers(item: &Item) -> Vec<Area> {
+fn answers(item: &Item, words: &PanelWords) -> Vec<Area> {
     match &item.kind {
         Kind::Scale { .. } => {
             let steps = (1..=SCALE_STEPS).map(|step| {
@@ -115,8 +119,8 @@ fn answers(item: &Item) -> Vec<Area> {
             row(steps.collect())
         }
         Kind::YesNo => row(vec![
-            ("Yes".to_owned(), Choice::Answer(Answer::YesNo(true))),
-            ("No".to_owned(), Choice::Answer(Answer::YesNo(false))),
+            (words.yes.clone(), Choice::Answer(Answer::YesNo(true))),
+            (words.no.clone(), Choice::Answer(Answer::YesNo(false))),
         ]),
         Kind::Choice { options, .. } => {
             let options = options.iter().map(|option| {
@@ -164,17 +168,17 @@ fn columns(answers: Vec<(String, Answer)>) -> Vec<Area> {
     answers.into_iter().enumerate().map(place).collect()
 }
 
-fn foot() -> Vec<Area> {
+fn foot(words: &PanelWords) -> Vec<Area> {
     let size = DVec2::new(FOOT_WIDTH, FOOT_HEIGHT);
     let right = f64::from(SIZE_PX.x) - MARGIN - FOOT_WIDTH;
     let places = [
-        (MARGIN, "Back", Choice::Back),
-        (MARGIN + FOOT_WIDTH + GAP, "Skip", Choice::Skip),
-        (right, "Stop", Choice::Stop),
+        (MARGIN, &words.back, Choice::Back),
+        (MARGIN + FOOT_WIDTH + GAP, &words.skip, Choice::Skip),
+        (right, &words.stop, Choice::Stop),
     ];
     places
         .into_iter()
-        .map(|(x, words, choice)| area(DVec2::new(x, FOOT_TOP), size, words.to_owned(), choice))
+        .map(|(x, words, choice)| area(DVec2::new(x, FOOT_TOP), size, words.clone(), choice))
         .collect()
 }
 
@@ -192,6 +196,7 @@ mod tests {
     use std::path::Path;
 
     use super::*;
+    use crate::words::Words;
     use experiment::questionnaire::Questionnaire;
 
     fn layouts() -> Vec<(Item, Layout)> {
@@ -203,7 +208,7 @@ mod tests {
                 position: (1, 1),
                 given: None,
             };
-            (item, Layout::of(&content))
+            (item, Layout::of(&content, &Words::shipped().panel))
         };
         items.into_iter().map(layout).collect()
     }

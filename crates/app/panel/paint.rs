@@ -5,6 +5,7 @@ use experiment::questionnaire::{Answer, Item, Kind};
 use renderer::{RgbaImage, TextPainter, egui};
 
 use super::layout::{Area, Choice, Content, Layout, SIZE_PX};
+use crate::words::{PanelWords, StopWords, fill};
 
 const GROUND: [u8; 4] = [24, 26, 32, 255];
 const LETTERS: egui::Color32 = egui::Color32::from_rgb(240, 236, 228);
@@ -13,24 +14,35 @@ const BOX: egui::Color32 = egui::Color32::from_rgb(58, 64, 78);
 const CHOSEN: egui::Color32 = egui::Color32::from_rgb(40, 120, 90);
 const STOP: egui::Color32 = egui::Color32::from_rgb(120, 44, 40);
 /// Letters of the question, the answers and the small print [pixels].
-const QUESTION_PX: f32 = 36.0;
-const ANSWER_PX: f32 = 28.0;
-const SMALL_PX: f32 = 22.0;
+pub(super) const QUESTION_PX: f32 = 36.0;
+pub(super) const ANSWER_PX: f32 = 28.0;
+pub(super) const SMALL_PX: f32 = 22.0;
+/// Letters of the stop sign's first and of its other lines [pixels].
+const STOP_PX: f32 = 110.0;
+pub(super) const STOP_HOW_PX: f32 = 44.0;
 const MARGIN: f32 = 40.0;
+/// Size of the stop sign's picture [pixels].
+pub(super) const STOP_SIZE_PX: glam::UVec2 = glam::UVec2::new(480, 320);
 
 /// Paints what the panel shows.
 ///
 /// # Errors
 /// When the device does not paint it.
-pub fn paint(painter: &mut TextPainter, content: &Content, layout: &Layout) -> Result<RgbaImage> {
+pub fn paint(
+    painter: &mut TextPainter,
+    content: &Content,
+    layout: &Layout,
+    fixed: &PanelWords,
+) -> Result<RgbaImage> {
     let image = painter.paint(SIZE_PX.x, SIZE_PX.y, GROUND, |ui| {
         let brush = ui.ctx().debug_painter();
         match content {
             Content::Words(words) => text(&brush, words, QUESTION_PX, egui::pos2(MARGIN, 200.0)),
             Content::Pair(number, count) => {
                 let corner = egui::pos2(MARGIN, 24.0);
-                text(&brush, &format!("{number} of {count}"), SMALL_PX, corner);
-                let words = "Did the last two throws feel the same, or different?";
+                let position = fill(&fixed.position, &[("number", number), ("count", count)]);
+                text(&brush, &position, SMALL_PX, corner);
+                let words = fixed.compare.as_str();
                 text(&brush, words, QUESTION_PX, egui::pos2(MARGIN, 64.0));
                 layout
                     .areas
@@ -43,9 +55,10 @@ pub fn paint(painter: &mut TextPainter, content: &Content, layout: &Layout) -> R
                 given,
             } => {
                 let corner = egui::pos2(MARGIN, 24.0);
-                text(&brush, &format!("{number} of {count}"), SMALL_PX, corner);
+                let position = fill(&fixed.position, &[("number", number), ("count", count)]);
+                text(&brush, &position, SMALL_PX, corner);
                 text(&brush, &item.text, QUESTION_PX, egui::pos2(MARGIN, 64.0));
-                ends(&brush, item, layout);
+                ends(&brush, item, layout, fixed);
                 for area in &layout.areas {
                     draw(&brush, area, given.as_ref());
                 }
@@ -59,17 +72,29 @@ pub fn paint(painter: &mut TextPainter, content: &Content, layout: &Layout) -> R
 ///
 /// # Errors
 /// When the device does not paint it.
-pub fn stop_sign(painter: &mut TextPainter) -> Result<RgbaImage> {
-    let image = painter.paint(480, 240, STOP.to_array(), |ui| {
+pub fn stop_sign(painter: &mut TextPainter, words: &StopWords) -> Result<RgbaImage> {
+    let size = STOP_SIZE_PX;
+    let image = painter.paint(size.x, size.y, STOP.to_array(), |ui| {
         let brush = ui.ctx().debug_painter();
-        for (words, size, y) in [
-            ("Stop", 96.0, 90.0),
-            ("point here and hold the trigger", 26.0, 190.0),
-        ] {
-            let font = egui::FontId::proportional(size);
-            let middle = egui::pos2(240.0, y);
-            brush.text(middle, egui::Align2::CENTER_CENTER, words, font, LETTERS);
-        }
+        let width = size.x as f32 - 20.0;
+        let centred = |words: &str, size_px: f32, y: f32| {
+            let mut job = egui::text::LayoutJob::simple(
+                words.to_owned(),
+                egui::FontId::proportional(size_px),
+                LETTERS,
+                width,
+            );
+            job.halign = egui::Align::Center;
+            let galley = brush.layout_job(job);
+            let at = egui::pos2(0.5 * size.x as f32, y - 0.5 * galley.size().y);
+            brush.galley(at, galley, LETTERS);
+        };
+        centred(
+            &words.stop,
+            STOP_PX.min(1.8 * width / words.stop.chars().count() as f32),
+            90.0,
+        );
+        centred(&words.how, STOP_HOW_PX, 230.0);
     });
     image.context("cannot paint the stop sign")
 }
@@ -83,7 +108,7 @@ fn text(brush: &egui::Painter, words: &str, size: f32, at: egui::Pos2) {
 }
 
 /// The words at a scale's ends, and what to do where there are no boxes.
-fn ends(brush: &egui::Painter, item: &Item, layout: &Layout) {
+fn ends(brush: &egui::Painter, item: &Item, layout: &Layout, fixed: &PanelWords) {
     let below = layout
         .areas
         .iter()
@@ -102,8 +127,12 @@ fn ends(brush: &egui::Painter, item: &Item, layout: &Layout) {
             brush.galley(egui::pos2(right, below), high, LETTERS);
         }
         Kind::Text => {
-            let words = "Say it in your own words; the experimenter writes it down.";
-            text(brush, words, ANSWER_PX, egui::pos2(MARGIN, below));
+            text(
+                brush,
+                &fixed.own_words,
+                ANSWER_PX,
+                egui::pos2(MARGIN, below),
+            );
         }
         Kind::YesNo | Kind::Choice { .. } => {}
     }

@@ -11,7 +11,7 @@ use super::{PULLED, Pointing, share};
 use crate::session::Session;
 
 /// Size of the sign [m].
-pub const SIZE_M: DVec2 = DVec2::new(0.36, 0.18);
+pub const SIZE_M: DVec2 = DVec2::new(0.48, 0.32);
 /// How far above the buttons its middle is [m].
 const ABOVE_M: f64 = 0.45;
 /// How long the trigger has to be held on it [s].
@@ -64,9 +64,14 @@ fn is_on(sign: &Pose, pointing: &Pointing) -> bool {
 
 /// Above the buttons, facing who stands on the approach.
 fn over_the_desk(game: &Game) -> Pose {
-    let alley = game.observe();
-    let [red, blue] = alley.buttons.map(|button| button.top);
-    let position = 0.5 * (red + blue) + DVec3::Y * ABOVE_M;
+    over(game.config())
+}
+
+/// Where it hangs in a room.
+pub(super) fn over(config: &game::Config) -> Pose {
+    let desk = &config.desk;
+    let top = desk.height_m + desk.button_travel_m;
+    let position = DVec3::new(desk.x_m, top + ABOVE_M, desk.z_m);
     let way = DVec3::new(-position.x, 0.0, 1.0);
     let yaw = libm::atan2(way.x, way.z);
     Pose {

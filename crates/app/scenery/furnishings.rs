@@ -7,7 +7,7 @@ use super::mesh::{Mesh, drum};
 use super::{Plan, Surface, block, both_sides};
 
 /// The screen over the foul line: width and height [m], its middle's height and place along the lane [m].
-const SCREEN: [f32; 2] = [1.5, 0.5];
+pub(crate) const SCREEN: [f32; 2] = [1.7, 0.75];
 const SCREEN_HEIGHT: f32 = 2.52;
 const SCREEN_Z: f32 = -0.9;
 /// How far it leans towards who looks up at it [rad].
@@ -74,6 +74,12 @@ pub fn screen_mesh(config: &Config) -> Mesh {
     let mut mesh = Mesh::default();
     mesh.append(&screen(), screen_place(0.0, &Plan::new(config)) * cover);
     mesh
+}
+
+/// Middle of the screen over the own lane.
+#[cfg(test)]
+pub(crate) fn screen_middle(config: &Config) -> Vec3 {
+    screen_place(0.0, &Plan::new(config)).translation.into()
 }
 
 /// Facing +z, about its middle.

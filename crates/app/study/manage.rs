@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, bail};
 use experiment::consent::ConsentForm;
 use experiment::files;
-use experiment::plan::{About, Balance, Plan, Scheme, SessionRules, balance};
+use experiment::plan::{About, Balance, Guidance, Plan, Scheme, SessionRules, balance};
 use experiment::record::Pairs;
 use experiment::staircase::{Rule, StaircasePlan};
 use experiment::study::{ParticipantId, Study};
@@ -14,7 +14,7 @@ use experiment::tables::{Export, Format};
 use super::folder::{self, place_text};
 use super::{entropy, seat, tables, utc_now};
 use crate::args::{
-    EraseArguments, ExportArguments, NewStudyArguments, PlanArguments, RuleChoice,
+    EraseArguments, ExportArguments, GuidanceChoice, NewStudyArguments, PlanArguments, RuleChoice,
     UnblindArguments, unusable,
 };
 
@@ -72,6 +72,12 @@ pub fn create(
         training_in_first_condition: !arguments.training_in_the_scene,
         items_after_each_game: arguments.items_after_each_game,
         undue_presses_allowed: arguments.allow_undue_presses,
+        guidance: Guidance {
+            glow: arguments.guidance.contains(&GuidanceChoice::Glow),
+            hints: arguments.guidance.contains(&GuidanceChoice::Hints),
+            feedback: arguments.guidance.contains(&GuidanceChoice::Feedback),
+            calibration: arguments.guidance.contains(&GuidanceChoice::Calibration),
+        },
         ..SessionRules::default()
     };
     let scheme = scheme(arguments, root)?;

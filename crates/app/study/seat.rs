@@ -85,8 +85,11 @@ pub fn check_staircase(plan: &StaircasePlan, root: &Path) -> Result<()> {
 /// # Errors
 /// When the configuration cannot be read, or the plan sets what it does not have.
 pub fn conditions(study: &Study, slot: u32, root: &Path) -> Result<Conditions> {
+    let guidance = study.plan().session.guidance.settings();
     if let Some(plan) = &study.plan().staircase {
-        let base = Config::load(&root.join("config"), SCENE, None, &[NO_REPLAY.to_owned()])?;
+        let mut settings = vec![NO_REPLAY.to_owned()];
+        settings.extend(guidance.map(|(key, is_on)| format!("{key}={is_on}")));
+        let base = Config::load(&root.join("config"), SCENE, None, &settings)?;
         let standard = with_value(&base, &plan.key, plan.standard)?;
         return Ok(Conditions {
             lobby: standard.clone(),
@@ -101,6 +104,7 @@ pub fn conditions(study: &Study, slot: u32, root: &Path) -> Result<Conditions> {
         let varied = varied.unwrap_or_default().into_iter();
         let mut settings = vec![NO_REPLAY.to_owned()];
         settings.extend(varied.map(|(key, value)| format!("{key}={value}")));
+        settings.extend(guidance.map(|(key, is_on)| format!("{key}={is_on}")));
         Config::load(&root.join("config"), SCENE, None, &settings)
     };
     let first = study.plan().session.training_in_first_condition;

@@ -7,25 +7,6 @@ use winit::keyboard::{KeyCode, PhysicalKey};
 
 use crate::devices::desk::{DeskEvent, Hold};
 
-/// The keys, as the help shows them.
-pub const HELP: &str = "\
-mouse            the hand: up and down swings the arm
-wheel            arm's length
-left button      hold to grab, let go to release
-right drag       look around; also A D and arrows
-W S              walk, walk back
-1 2              the Red and the Blue button
-F1               this help
-F3               what it costs
-Esc              end and save
-
-gamepad          left stick the hand, right stick head and arm,
-                 right trigger grabs, A B walk, X Y Red and Blue
-
-To bowl: press 1. Turn right to the balls, reach, hold the
-left button. Turn back and walk to the foul line. Pull the
-mouse back, push it forward, let go at the lowest point.";
-
 /// What a key does.
 #[derive(Clone, Copy, Debug)]
 enum Meaning {
@@ -36,7 +17,7 @@ enum Meaning {
 }
 
 /// Every key that means something.
-const KEYS: [(KeyCode, Meaning); 13] = [
+const KEYS: [(KeyCode, Meaning); 15] = [
     (KeyCode::KeyW, Meaning::Hold(Hold::Forward)),
     (KeyCode::KeyS, Meaning::Hold(Hold::Back)),
     (KeyCode::KeyA, Meaning::Hold(Hold::TurnLeft)),
@@ -47,6 +28,14 @@ const KEYS: [(KeyCode, Meaning); 13] = [
     (KeyCode::Numpad1, RED),
     (KeyCode::Digit2, BLUE),
     (KeyCode::Numpad2, BLUE),
+    (
+        KeyCode::KeyP,
+        Meaning::Once(Command::Desk(DeskEvent::Pause)),
+    ),
+    (
+        KeyCode::KeyR,
+        Meaning::Once(Command::Desk(DeskEvent::Recentre)),
+    ),
     (KeyCode::F1, Meaning::Once(Command::Help)),
     (KeyCode::F3, Meaning::Once(Command::Cost)),
     (KeyCode::Escape, Meaning::Once(Command::End)),
@@ -199,13 +188,15 @@ mod tests {
 
     #[test]
     fn help_and_readme_name_every_key() {
+        let words = crate::words::Words::shipped();
+        let help = words.with_buttons(&words.window.help);
         let readme = include_str!("../../../README.md");
         let (_, readme) = readme.split_once("## Keys").expect("a section of keys");
         let (readme, _) = readme.split_once("\n## ").expect("another section");
         let others = ["mouse", "wheel", "left", "drag", "gamepad"];
         let names = KEYS.iter().map(|(code, _)| printed(*code));
         for name in names.chain(others.map(str::to_owned)) {
-            for (place, text) in [("help", HELP), ("README", readme)] {
+            for (place, text) in [("help", help.as_str()), ("README", readme)] {
                 let mut words = text.split(|c: char| !c.is_alphanumeric());
                 assert!(
                     words.any(|word| word == name),

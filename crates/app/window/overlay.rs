@@ -6,36 +6,43 @@ use image::RgbaImage;
 use renderer::{Anchor, TextBlock, TextPainter, WindowTarget};
 
 use super::cost::Report;
-use super::keys;
+use crate::words::{Words as AllWords, fill};
 
-/// What the text says; painted anew only when it changes.
+/// What is shown; painted anew only when it changes.
 #[derive(Clone, Debug, PartialEq, Default)]
-struct Words {
+struct Shown {
     news: String,
     sheet: String,
     help: bool,
+    is_paused: bool,
     cost: Option<String>,
 }
 
 /// The text over the window.
 pub struct Overlay {
     painter: TextPainter,
-    words: Words,
-    shown: Option<Words>,
+    words: AllWords,
+    now: Shown,
+    shown: Option<Shown>,
     playing: Option<Button>,
     has_cost: bool,
 }
 
 impl Overlay {
-    /// Text by `painter`; at first it says how to begin.
-    pub fn new(painter: TextPainter) -> Self {
-        let news = "Press 1 (Red) or 2 (Blue) to begin".to_owned();
+    /// Text by `painter` in these words; at first it says how to begin.
+    pub fn new(painter: TextPainter, words: AllWords, is_practice: bool) -> Self {
+        let begin = if is_practice {
+            &words.practice.begin
+        } else {
+            &words.window.begin
+        };
         Self {
             painter,
-            words: Words {
-                news,
-                ..Words::default()
+            now: Shown {
+                news: words.with_buttons(begin),
+                ..Shown::default()
             },
+            words,
             shown: None,
             playing: None,
             has_cost: false,
@@ -44,7 +51,7 @@ impl Overlay {
 
     /// Shows or hides the keys.
     pub fn toggle_help(&mut self) {
-        self.words.help = !self.words.help;
+        self.now.help = !self.now.help;
     }
 
     /// Shows or hides what frames and physics cost.
@@ -58,8 +65,9 @@ impl Overlay {
             if let EventKind::GameStarted { button } = event.kind {
                 self.playing = Some(button);
             }
-            if let Some(news) = news(&event.kind) {
-                self.words.news = news;
+            let tells = game.config().guidance.feedback;
+            if let Some(news) = news(&event.kind, tells, &self.words) {
+                self.now.news = news;
             }
         }
     }
@@ -74,31 +82,36 @@ impl Overlay {
         cost: Option<&Report>,
         target: &mut WindowTarget,
     ) -> Result<()> {
-        self.words.cost = cost.filter(|_| self.has_cost).map(Report::text);
-        let sheet = |button| format!("{button}\n{}", game.score_sheet(button));
-        self.words.sheet = self.playing.map(sheet).unwrap_or_default();
-        if self.shown.as_ref() == Some(&self.words) {
+        self.now.is_paused = game.is_paused();
+        self.now.cost = cost.filter(|_| self.has_cost).map(Report::text);
+        let name = |button| self.words.button(button);
+        let sheet = |button| format!("{}\n{}", name(button), game.score_sheet(button));
+        self.now.sheet = self.playing.map(sheet).unwrap_or_default();
+        if self.shown.as_ref() == Some(&self.now) {
             return Ok(());
         }
-        let mut images = vec![(
-            Anchor::TopLeft,
-            self.paint(&self.words.news.clone(), 20.0, false)?,
-        )];
+        let news = if self.now.is_paused {
+            self.words.window.paused.clone()
+        } else {
+            self.now.news.clone()
+        };
+        let mut images = vec![(Anchor::TopLeft, self.paint(&news, 20.0, false)?)];
         images.push((
             Anchor::BottomLeft,
-            self.paint("F1 shows the keys", 14.0, false)?,
+            self.paint(&self.words.window.keys.clone(), 14.0, false)?,
         ));
-        if !self.words.sheet.is_empty() {
+        if !self.now.sheet.is_empty() {
             images.push((
                 Anchor::TopRight,
-                self.paint(&self.words.sheet.clone(), 13.0, true)?,
+                self.paint(&self.now.sheet.clone(), 13.0, true)?,
             ));
         }
-        if let Some(cost) = self.words.cost.clone() {
+        if let Some(cost) = self.now.cost.clone() {
             images.push((Anchor::BottomRight, self.paint(&cost, 12.0, true)?));
         }
-        if self.words.help {
-            images.push((Anchor::Center, self.paint(keys::HELP, 17.0, true)?));
+        if self.now.help {
+            let help = self.words.with_buttons(&self.words.window.help);
+            images.push((Anchor::Center, self.paint(help.trim(), 17.0, true)?));
         }
         let overlays: Vec<_> = images
             .iter()
@@ -107,7 +120,7 @@ impl Overlay {
         target
             .set_overlays(&overlays)
             .context("cannot show text in the window")?;
-        self.shown = Some(self.words.clone());
+        self.shown = Some(self.now.clone());
         Ok(())
     }
 
@@ -121,25 +134,27 @@ impl Overlay {
     }
 }
 
-/// What a player wants to be told, in one line.
-fn news(event: &EventKind) -> Option<String> {
+/// What a player wants to be told, in one line; of a release only where `tells`.
+fn news(event: &EventKind, tells: bool, words: &AllWords) -> Option<String> {
+    let window = &words.window;
+    let of = |text: &str, button: &Button| fill(text, &[("button", &words.button(*button))]);
     match event {
-        EventKind::GameStarted { button } => Some(format!("{button}: take a ball and bowl")),
-        EventKind::ConfirmAsked { button } => Some(format!(
-            "A game is being played: press {button} again to start over"
-        )),
-        EventKind::Released(release) => Some(format!("Released at {:.1} m/s", release.speed)),
-        EventKind::Foul => Some("Foul: over the line at the release".to_owned()),
+        EventKind::GameStarted { button } => Some(of(&window.started, button)),
+        EventKind::ConfirmAsked { button } => Some(of(&window.confirm, button)),
+        EventKind::Released(release) if tells => {
+            let speed = format!("{:.1}", release.speed);
+            Some(fill(&window.released, &[("speed", &speed)]))
+        }
+        EventKind::Foul if tells => Some(window.foul.clone()),
         EventKind::Settled {
             fallen, standing, ..
-        } => Some(format!(
-            "{} down, {} standing",
-            fallen.len(),
-            standing.len()
+        } => Some(fill(
+            &window.settled,
+            &[("fallen", &fallen.len()), ("standing", &standing.len())],
         )),
-        EventKind::GameOver { button, total } => Some(format!(
-            "{button} is over: {total} pins. Press 1 or 2 for another game"
-        )),
+        EventKind::GameOver { button, total } => {
+            Some(fill(&of(&window.over, button), &[("total", total)]))
+        }
         _ => None,
     }
 }
@@ -155,6 +170,24 @@ mod tests {
             standing: vec![4, 5, 6, 7, 8, 9, 10],
             reason: game::EndReason::Still,
         };
-        assert_eq!(news(&settled).as_deref(), Some("3 down, 7 standing"));
+        let words = AllWords::shipped();
+        let told = news(&settled, false, &words);
+        assert_eq!(told.as_deref(), Some("3 down, 7 standing"));
+        let over = EventKind::GameOver {
+            button: Button::Blue,
+            total: 144,
+        };
+        let told = news(&over, false, &words).expect("a line");
+        assert!(told.starts_with("Blue is over: 144 pins."), "{told}");
+    }
+
+    #[test]
+    fn news_of_a_release_are_told_where_that_is_asked_for() {
+        let words = AllWords::shipped();
+        assert_eq!(news(&EventKind::Foul, false, &words), None);
+        assert_eq!(
+            news(&EventKind::Foul, true, &words),
+            Some(words.window.foul)
+        );
     }
 }

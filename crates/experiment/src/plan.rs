@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 
 pub use allocate::allocate;
 pub use scheme::{Scheme, SchemeError};
-pub use study_file::{About, Plan, PlanError, SCHEMA, SessionRules};
+pub use study_file::{About, Guidance, Plan, PlanError, SCHEMA, SessionRules};
 pub use table::{TableError, allocation_csv, parse_allocation};
 pub use verify::{Balance, PAPER_TABLE_2, balance};
 

@@ -9,7 +9,8 @@ use std::path::PathBuf;
 use serde::Deserialize;
 
 pub use answers::{Answer, Answers, Entry, Presence};
-pub(crate) use file::{line_of, names_the_purpose};
+pub(crate) use file::line_of;
+pub use file::names_the_purpose;
 pub use form::{Act, AnswerError, Form, Logged, Stage};
 
 use crate::files::FileError;

@@ -5,10 +5,13 @@
 //! range ends the program with one sentence that names the file, the line and the key.
 
 mod alley;
+mod comfort;
 pub(crate) mod coulomb;
 mod effects;
+mod guidance;
 mod layers;
 mod origins;
+mod practice;
 mod session;
 mod shows;
 mod sound;
@@ -22,9 +25,12 @@ pub use alley::{
     DeskConfig, GutterConfig, KickbackConfig, LaneConfig, PitConfig, RackConfig, RoomConfig,
     StartConfig,
 };
+pub use comfort::{CalibrationConfig, ComfortConfig};
 pub use coulomb::{CoulombConfig, PairConfig};
 pub use effects::{EffectName, OilConfig};
+pub use guidance::GuidanceConfig;
 pub use layers::{ConfigError, Layer};
+pub use practice::PracticeConfig;
 pub use session::{
     DisplayConfig, DisplayProfile, DisplayProfileName, ParticipantConfig, PinsetterConfig,
     RulesConfig, TrackingConfig,
@@ -90,6 +96,14 @@ pub struct Config {
     pub participant: ParticipantConfig,
     /// How contacts sound.
     pub sound: SoundConfig,
+    /// What helps a newcomer.
+    pub guidance: GuidanceConfig,
+    /// How height and reach are measured.
+    pub calibration: CalibrationConfig,
+    /// What makes a stay comfortable.
+    pub comfort: ComfortConfig,
+    /// Throws without a game.
+    pub practice: PracticeConfig,
 }
 
 /// How the world steps.

@@ -77,7 +77,7 @@ impl Game {
     }
 
     /// Goes on in another room. What the hand held stays behind in the old one.
-    fn enter(&mut self, room: Room) {
+    pub(crate) fn enter(&mut self, room: Room) {
         let buttons = self
             .room
             .buttons
@@ -93,6 +93,8 @@ impl Game {
             disturbed_since: None,
         };
         self.pending = None;
+        // Entities of the old room are nobody in the new one.
+        (self.let_go, self.last_throw) = (None, None);
         self.hand.held = None;
         self.hand.let_go = None;
         self.hand.candidate = None;

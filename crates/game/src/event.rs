@@ -187,6 +187,25 @@ pub enum EventKind {
         /// Which ball, from 0.
         ball: u8,
     },
+    /// The session is paused: nothing moves until it is resumed.
+    Paused,
+    /// It goes on.
+    Resumed,
+    /// The participant was put back to the start, facing the lane.
+    WentToStart,
+    /// Height and reach were measured, and what must be reached was placed.
+    Calibrated {
+        /// Height of the eyes over the floor that they sit or stand on [m].
+        eye_height_m: f64,
+        /// From the head to the hand of a stretched arm, over the floor [m].
+        reach_m: f64,
+        /// They sit, and were lifted.
+        is_seated: bool,
+        /// Height of the rack's tray from now on [m].
+        tray_height_m: f64,
+        /// Height of the desk from now on [m].
+        desk_height_m: f64,
+    },
     /// The tracker lost the head or the hand, or found it again.
     Tracking {
         /// Which.

@@ -178,6 +178,7 @@ impl Game {
         self.room.world.set_collides(hand, false);
         let is_foul = self.head_is_beyond();
         self.note_on_ball(held.entity, Some(is_foul));
+        self.let_go = Some((held.entity, used));
         self.record(EventKind::Released(Release {
             model,
             used,

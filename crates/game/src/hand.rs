@@ -71,7 +71,9 @@ impl Game {
             .and_then(|tracked| tracked.velocity)
             .map(|velocity| self.in_world(velocity));
         let follows = |before: &Pose| {
-            now.is_some_and(|now| !self.has_jumped(*before, now, input.steps)) && !input.recentred
+            now.is_some_and(|now| !self.has_jumped(*before, now, input.steps))
+                && !input.recentred
+                && !input.recentre
         };
         self.hand.before = before.filter(follows);
         if self.hand.before.is_none() {

@@ -104,6 +104,12 @@ pub struct Input {
     /// moved.
     #[serde(default)]
     pub recentred: bool,
+    /// Whether the session is paused: the head may move, and nothing else does.
+    #[serde(default)]
+    pub paused: bool,
+    /// A wish to be back at the start, facing the lane.
+    #[serde(default)]
+    pub recentre: bool,
     /// Physics steps that this frame advances.
     pub steps: u32,
     /// When the trigger last changed, if it did since the frame before and the device measured when.

@@ -11,6 +11,7 @@ mod ball_return;
 mod bare_alley;
 mod bodies;
 mod buttons;
+mod calibrate;
 mod components;
 mod condition;
 mod config;
@@ -22,6 +23,7 @@ mod hand;
 mod holes;
 mod input;
 mod observe;
+mod pause;
 mod pin_shape;
 mod pinsetter;
 mod release;
@@ -37,12 +39,13 @@ use physics::{Pose, Stopwatch, Unwatched};
 pub use bare_alley::{BareAlley, BareAlleyError};
 pub use condition::{Button, Conditions};
 pub use config::{
-    BallConfig, Config, ConfigError, CoulombConfig, DeskConfig, DisplayConfig, DisplayProfile,
-    DisplayProfileName, EffectName, GutterConfig, HandConfig, KickbackConfig, LaneConfig, Layer,
-    MarkingsConfig, ObjectShape, ObjectsConfig, OilConfig, PairConfig, ParticipantConfig,
-    PhysicsConfig, PinConfig, PinEllipsoidConfig, PinPartsConfig, PinsetterConfig, PitConfig,
-    RackConfig, ReleaseConfig, ReleaseFit, ResponseModel, RoomConfig, RulesConfig, ShowsConfig,
-    SoundConfig, StartConfig, TrackingConfig, WalkingConfig,
+    BallConfig, CalibrationConfig, ComfortConfig, Config, ConfigError, CoulombConfig, DeskConfig,
+    DisplayConfig, DisplayProfile, DisplayProfileName, EffectName, GuidanceConfig, GutterConfig,
+    HandConfig, KickbackConfig, LaneConfig, Layer, MarkingsConfig, ObjectShape, ObjectsConfig,
+    OilConfig, PairConfig, ParticipantConfig, PhysicsConfig, PinConfig, PinEllipsoidConfig,
+    PinPartsConfig, PinsetterConfig, PitConfig, PracticeConfig, RackConfig, ReleaseConfig,
+    ReleaseFit, ResponseModel, RoomConfig, RulesConfig, ShowsConfig, SoundConfig, StartConfig,
+    TrackingConfig, WalkingConfig,
 };
 pub use contacts::{Contact, RollingBall};
 pub use event::{
@@ -50,10 +53,11 @@ pub use event::{
 };
 pub use holes::{FINGERS_IN_HAND, HALF_SPAN, THUMB_IN_HAND, hand_on_ball};
 pub use input::{Input, Tracked, TriggerChange, Velocity};
-pub use observe::{BallSeen, ButtonSeen, Observation, Phase, PinSeen};
+pub use observe::{BallSeen, ButtonSeen, Observation, Phase, PinSeen, ThrowSeen};
 pub use score::{Delivery, PINS, Roll, ScoreError, ScoreSheet};
 pub use visible::{Model, Visible};
 
+use calibrate::HeldOut;
 use contest::Pending;
 use hand::Hand;
 use room::Room;
@@ -102,6 +106,13 @@ pub struct Game {
     playing: Option<Button>,
     sheets: [ScoreSheet; 2],
     pending: Option<Pending>,
+    /// What the hand let go last, and how.
+    let_go: Option<(hecs::Entity, ReleaseVelocity)>,
+    /// The last throw, to look at.
+    last_throw: Option<ThrowSeen>,
+    throws_over: u32,
+    is_paused: bool,
+    held_out: Option<HeldOut>,
     pressed: Vec<Button>,
     keys: [bool; 2],
     impacts: Vec<Contact>,
@@ -140,6 +151,10 @@ fn differing(condition: &Config, lobby: &Config) -> Option<&'static str> {
         ("display", condition.display != lobby.display),
         ("participant", condition.participant != lobby.participant),
         ("sound", condition.sound != lobby.sound),
+        ("guidance", condition.guidance != lobby.guidance),
+        ("calibration", condition.calibration != lobby.calibration),
+        ("comfort", condition.comfort != lobby.comfort),
+        ("practice", condition.practice != lobby.practice),
     ];
     once.into_iter()
         .find(|(_, differs)| *differs)
@@ -181,6 +196,11 @@ impl Game {
             playing: None,
             sheets: [ScoreSheet::new(frames), ScoreSheet::new(frames)],
             pending: None,
+            let_go: None,
+            last_throw: None,
+            throws_over: 0,
+            is_paused: false,
+            held_out: None,
             pressed: Vec::new(),
             keys: [false; 2],
             impacts: Vec::new(),
@@ -197,7 +217,9 @@ impl Game {
     /// The same, while `watch` is told the stages of the physics; the game is the same with every watch.
     pub fn step_watched(&mut self, input: &Input, watch: &mut impl Stopwatch) {
         self.events.clear();
+        let input = &self.heed_pause(input);
         self.track_head(input);
+        self.go_to_start(input);
         self.walk(input);
         self.track_hand(input);
         let let_go = self.let_go_within(input);
@@ -226,6 +248,7 @@ impl Game {
         self.grip(input, let_go);
         self.press_keys(input);
         self.press(input.locked);
+        self.watch_gesture(input);
     }
 
     /// Adds a fact of this instant.

@@ -1,6 +1,6 @@
 //! What can be known of a game from outside: for the picture, the journal, and the scripted participant.
 
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 use physics::Pose;
 
 use crate::Game;
@@ -8,7 +8,7 @@ use crate::alley;
 use crate::components::{Ball, Journey, Painted, Physical, Pin, PinKeeper, PushButton, Shown};
 use crate::condition::{Button, Conditions};
 use crate::config::Config;
-use crate::event::Event;
+use crate::event::{Event, ReleaseVelocity};
 use crate::score::{Delivery, ScoreSheet};
 use crate::throw::{Stage, count, is_down};
 use crate::visible::{Model, Visible};
@@ -65,6 +65,31 @@ pub struct ButtonSeen {
     pub radius: f64,
     /// True from the press until it has come up again.
     pub is_pressed: bool,
+}
+
+/// How a ball was let go, and whether behind the line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThrowSeen {
+    /// Speed of the ball's centre [m/s].
+    pub speed: f64,
+    /// Direction over the floor against the lane's, positive to the right [rad].
+    pub angle: f64,
+    /// How fast the ball turned, about whatever axis [1/s].
+    pub turns: f64,
+    /// The head was beyond the foul line.
+    pub is_foul: bool,
+}
+
+impl ThrowSeen {
+    pub(crate) fn of(release: &ReleaseVelocity, is_foul: bool) -> Self {
+        let way = release.linear;
+        Self {
+            speed: way.length(),
+            angle: DVec2::new(-way.z, way.x).to_angle(),
+            turns: release.angular.length() / std::f64::consts::TAU,
+            is_foul,
+        }
+    }
 }
 
 /// What a participant can see.
@@ -134,6 +159,35 @@ impl Game {
     /// The score sheet of the last game under a button; empty before the first.
     pub fn score_sheet(&self, button: Button) -> &ScoreSheet {
         &self.sheets[button as usize]
+    }
+
+    /// The last ball that crossed the foul line out of a hand; `None` before the first of a game.
+    pub fn last_throw(&self) -> Option<ThrowSeen> {
+        self.last_throw
+    }
+
+    /// Throws that have ended since the session began, in practice too.
+    pub fn throws_over(&self) -> u32 {
+        self.throws_over
+    }
+
+    /// How fast the participant walks by button, forward or back [m/s].
+    pub fn walking_speed(&self) -> f64 {
+        self.walking_speed.abs()
+    }
+
+    /// Whether the session is paused.
+    pub fn is_paused(&self) -> bool {
+        self.is_paused
+    }
+
+    /// Whether the hand could take a ball now.
+    pub fn could_take_a_ball(&self) -> bool {
+        self.hand.held.is_none()
+            && self
+                .hand
+                .candidate
+                .is_some_and(|entity| matches!(self.room.model(entity), Model::Ball(_)))
     }
 
     /// The settings of the room that is there now.
@@ -217,8 +271,9 @@ impl Game {
         visible
     }
 
-    /// Whether the hand could take it or has it, or it is a button that is down.
+    /// Whether the hand could take it or has it, where the scene lets that glow, or it is a button that is down.
     fn is_highlighted(&self, entity: hecs::Entity) -> bool {
+        let glows = self.room.config.guidance.glow;
         let is_held = self.hand.held.is_some_and(|held| held.entity == entity);
         let is_near = self.hand.held.is_none() && self.hand.candidate == Some(entity);
         let is_down = self
@@ -226,7 +281,7 @@ impl Game {
             .ecs
             .get::<&PushButton>(entity)
             .is_ok_and(|button| button.is_pressed);
-        is_held || is_near || is_down
+        glows && (is_held || is_near) || is_down
     }
 
     /// What a participant can see, in words and numbers.

@@ -72,18 +72,19 @@ impl Movement {
 }
 
 impl Cycle {
-    /// After a throw: a full rack on its spots, or the pins that stand, where they stand.
+    /// After a throw: a full rack, or what practice leaves of it, on its spots, or the pins that stand, where they stand.
     pub(crate) fn after_throw(room: &Room, now: u64, full_rack: bool) -> Self {
         let standing: Vec<Entity> = in_play(room)
             .into_iter()
             .filter(|pin| !is_down(room, *pin))
             .collect();
         if full_rack {
-            let set = room
-                .pins
-                .iter()
-                .map(|pin| (*pin, on_spot(room, *pin)))
-                .collect();
+            let stands = |pin: &&Entity| {
+                let number = room.get::<Pin>(**pin).number;
+                room.config.practice.stands(number)
+            };
+            let rack = room.pins.iter().filter(stands);
+            let set = rack.map(|pin| (*pin, on_spot(room, *pin))).collect();
             return Self::new(now, Vec::new(), set);
         }
         let lifted = standing

@@ -80,7 +80,7 @@ impl Room {
         let Builder {
             world, ecs, owners, ..
         } = builder;
-        Ok(Self {
+        let mut room = Self {
             config: config.clone(),
             world,
             ecs,
@@ -93,7 +93,23 @@ impl Room {
             owners,
             obstacles,
             earlier: Vec::new(),
-        })
+        };
+        room.leave_pins();
+        Ok(room)
+    }
+
+    /// Puts away the pins that practice leaves out.
+    fn leave_pins(&mut self) {
+        for pin in self.pins.clone() {
+            let mut state: Pin = self.get(pin);
+            if self.config.practice.stands(state.number) {
+                continue;
+            }
+            (state.ready, state.keeper) = (None, PinKeeper::Store);
+            self.set(pin, state);
+            self.set_hidden(pin, true);
+            self.take_out(pin);
+        }
     }
 
     /// Keeps the poses of pins and balls; the step that follows is the one whose inside pictures may show.

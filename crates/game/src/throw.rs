@@ -9,6 +9,7 @@ use crate::alley;
 use crate::components::{Ball, Journey, Pin, PinKeeper};
 use crate::config::Config;
 use crate::event::{EndReason, EventKind};
+use crate::observe::ThrowSeen;
 use crate::pinsetter::Cycle;
 use crate::room::Room;
 use crate::visible::Model;
@@ -77,6 +78,10 @@ impl Game {
             is_foul,
             has_hit: false,
         });
+        self.last_throw = self
+            .let_go
+            .filter(|(entity, _)| *entity == ball)
+            .map(|(_, used)| ThrowSeen::of(&used, is_foul));
         let next = self.delivery();
         self.record(EventKind::ThrowStarted {
             frame: next.map_or(0, |next| next.frame),
@@ -127,6 +132,7 @@ impl Game {
             return;
         };
         let is_foul = throw.is_foul;
+        self.throws_over += 1;
         self.end_throw(is_foul, reason);
     }
 

@@ -46,7 +46,7 @@ fn ramp(config: &Config, speed: f64, wanted: f64, seconds: f64) -> f64 {
 }
 
 /// Horizontal unit vector that the head faces along; a head that looks at its feet faces where its crown points.
-fn heading(head: Pose) -> DVec3 {
+pub(crate) fn heading(head: Pose) -> DVec3 {
     let level = |axis: DVec3| {
         let axis = head.rotation * axis;
         DVec3::new(axis.x, 0.0, axis.z)

@@ -60,7 +60,7 @@ pub use relay::relay;
 pub use renderer::{MAX_VIEWS, Renderer, RendererSettings};
 pub use scene::{
     Enclosure, Instance, Lamp, Light, LightSource, MAX_LAMPS, MAX_OCCLUDERS, Material, MeshId,
-    Occluder, Pattern, Scene, TextureId,
+    Occluder, Pattern, Scene, TextureId, Vignette,
 };
 pub use text::{TextBlock, TextPainter};
 pub use texture::load_image;

@@ -13,6 +13,7 @@ use crate::passes::hidden::HiddenPass;
 use crate::passes::lit::{LitInputs, LitPass, Shading, Targets};
 use crate::passes::mirror::{self, MirrorPass};
 use crate::passes::shadow::{LightFrame, ShadowPass};
+use crate::passes::vignette::VignettePass;
 use crate::passes::{EYE_STRIDE, GpuMesh};
 use crate::scene::Scene;
 use crate::shaders::Lookups;
@@ -80,6 +81,7 @@ pub struct Renderer {
     mirror: Option<MirrorPass>,
     /// One for each shading that was called for.
     lit: Vec<LitPass>,
+    vignette: Option<VignettePass>,
     targets: Option<Targets>,
     /// Made when somebody first wants an eye's depth.
     depth: Option<DepthPass>,
@@ -133,6 +135,7 @@ impl Renderer {
             shadow: None,
             mirror: None,
             lit: Vec::new(),
+            vignette: None,
             targets: None,
             depth: None,
             hidden: None,
@@ -163,6 +166,7 @@ impl Renderer {
             Shading::Smooth(lookups) if lookups.occlusion => "lit with occlusion",
             Shading::Smooth(_) => "lit",
         }));
+        names.extend(self.vignette.as_ref().map(|_| "vignette"));
         names
     }
 
@@ -191,6 +195,7 @@ impl Renderer {
         self.frame.background = scene.background;
         self.fit_passes(scene, light.as_ref(), size);
         self.write_uniforms(scene, &eyes, light.as_ref(), size);
+        self.fit_vignette(scene, &eyes);
         Ok(())
     }
 
@@ -205,6 +210,18 @@ impl Renderer {
         let targets = Targets::new(device, size, samples, depth.is_some());
         self.depth = depth.map(|format| DepthPass::new(device, &targets.depth, samples, format));
         self.targets = Some(targets);
+    }
+
+    /// Makes the dark edge's pass when the first scene calls for it.
+    fn fit_vignette(&mut self, scene: &Scene, eyes: &[View]) {
+        let wanted = scene.vignette.filter(|vignette| vignette.strength > 0.0);
+        self.frame.has_vignette = wanted.is_some();
+        if let Some(vignette) = wanted {
+            let device = &self.gpu.device;
+            self.vignette
+                .get_or_insert_with(|| VignettePass::new(device))
+                .fit(&self.gpu, eyes, vignette);
+        }
     }
 
     /// What this frame looks up: what the settings allow and the scene calls for.

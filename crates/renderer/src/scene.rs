@@ -165,6 +165,15 @@ pub struct Enclosure {
     pub reach_m: f32,
 }
 
+/// A dark edge over the picture, round what lies straight ahead.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vignette {
+    /// Angle from straight ahead up to which nothing is darkened [rad].
+    pub clear: f32,
+    /// How dark it is beyond, from 0 to 1.
+    pub strength: f32,
+}
+
 /// Everything that is drawn in one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
@@ -184,6 +193,8 @@ pub struct Scene {
     pub occluders: Vec<Occluder>,
     /// The building's inside, if its corners are to be dim.
     pub enclosure: Option<Enclosure>,
+    /// The dark edge of the picture, if it is to have one.
+    pub vignette: Option<Vignette>,
 }
 
 impl Default for Scene {
@@ -198,6 +209,7 @@ impl Default for Scene {
             background: [0.02, 0.018, 0.016],
             occluders: Vec::new(),
             enclosure: None,
+            vignette: None,
         }
     }
 }

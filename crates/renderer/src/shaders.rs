@@ -18,6 +18,8 @@ pub(crate) const SHRINK: &str = file!("shrink");
 pub(crate) const HIDDEN: &str = file!("hidden");
 /// Images into rectangles of the window.
 pub(crate) const PRESENT: &str = file!("present");
+/// A dark edge over a picture.
+pub(crate) const VIGNETTE: &str = file!("vignette");
 
 /// What the eyes' pass looks up beside the surfaces themselves; what is off is neither bound nor read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -83,7 +85,7 @@ pub(crate) fn depth(samples: u32) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::uniforms::{EyeRaw, LampRaw, LightingRaw, PictureRaw};
+    use crate::uniforms::{EyeRaw, LampRaw, LightingRaw, PictureRaw, VignetteRaw};
     use wgpu::naga;
 
     fn all() -> Vec<(String, String)> {
@@ -92,6 +94,7 @@ mod tests {
             ("shrink".to_owned(), SHRINK.to_owned()),
             ("present".to_owned(), PRESENT.to_owned()),
             ("hidden".to_owned(), HIDDEN.to_owned()),
+            ("vignette".to_owned(), VIGNETTE.to_owned()),
             ("mirror".to_owned(), mirror()),
             ("flat".to_owned(), flat()),
             ("depth of one sample".to_owned(), depth(1)),
@@ -185,6 +188,11 @@ mod tests {
         assert_eq!(
             size_of_struct(&present, "Picture"),
             Some(size_of::<PictureRaw>())
+        );
+        let vignette = parsed("vignette", VIGNETTE);
+        assert_eq!(
+            size_of_struct(&vignette, "Vignette"),
+            Some(size_of::<VignetteRaw>())
         );
     }
 }

@@ -163,6 +163,17 @@ pub(crate) struct PictureRaw {
     pub padding: [u32; 3],
 }
 
+/// `Vignette` in vignette.wgsl.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub(crate) struct VignetteRaw {
+    pub tangents: [f32; 4],
+    pub clear: f32,
+    pub dark: f32,
+    pub strength: f32,
+    pub padding: f32,
+}
+
 /// `InstanceInput` and `LookInput`: one instance as vertex attributes 3 to 11.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]

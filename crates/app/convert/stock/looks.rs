@@ -4,7 +4,7 @@ use anyhow::Result;
 use renderer::{Material, Pattern, TextureId};
 
 use super::Assets;
-use crate::scenery::Surface;
+use crate::scenery::{Surface, oil};
 
 /// Balls where faces have one colour: blue, green, orange, violet.
 pub(super) const PLAIN_BALLS: [[f32; 3]; 4] = [
@@ -51,6 +51,8 @@ const VARNISH: f32 = 0.045;
 
 /// Mean colour of the lane's wood, where it has no pattern.
 const MAPLE: [f32; 3] = [0.62, 0.38, 0.17];
+/// Under the most oil, as practice shows it: bluer than it is, and smoother.
+const OILED: [f32; 3] = [0.34, 0.36, 0.38];
 const PINE: [f32; 3] = [0.46, 0.26, 0.11];
 
 /// A surface of one colour.
@@ -141,6 +143,7 @@ impl Looks {
         let takes_shadows = matches!(
             surface,
             Surface::Lane
+                | Surface::Oil(_)
                 | Surface::Approach
                 | Surface::Markings
                 | Surface::Gutters
@@ -166,6 +169,14 @@ impl Looks {
                 mirror: 1.0,
                 ..self.wood(MAPLE, 0.17)
             },
+            Surface::Oil(level) => {
+                let share = f32::from(level) / f32::from(oil::LEVELS);
+                let tint = |part: usize| MAPLE[part] + share * (OILED[part] - MAPLE[part]);
+                Material {
+                    mirror: 1.0,
+                    ..self.wood([tint(0), tint(1), tint(2)], 0.17 - 0.1 * share)
+                }
+            }
             Surface::Approach => Material {
                 mirror: 1.0,
                 ..self.wood(PINE, 0.26)

@@ -224,3 +224,26 @@ fn a_change_is_aged_from_the_time_of_display() {
     assert!((age(1_030_000_000).expect("a recent change") - 0.03).abs() < 1e-12);
     assert_eq!(age(2_000_000_000), None, "too old to be believed");
 }
+
+/// The panel hangs at the hand that does not play, whichever that is.
+#[test]
+fn the_wrist_is_that_of_the_hand_that_does_not_play() {
+    let mut participant = Participant::new(720.0);
+    let mut both = readings(0.0, 0.0);
+    both.head = grip(0.0);
+    let rig = Pose::from_position(DVec3::new(10.0, 0.0, 0.0));
+    let x = |participant: &Participant, readings: &Readings| {
+        let arms = participant.arms(readings, rig).expect("a head and a hand");
+        let pointer = arms.pointer.map(|(hand, _)| hand.position.x);
+        (arms.wrist.position.x, pointer)
+    };
+    assert_eq!(x(&participant, &both), (9.7, Some(10.3)));
+    let mut left = readings(0.9, 0.0);
+    left.head = grip(0.0);
+    participant.input(&left, 0, 0.01, false);
+    assert_eq!(x(&participant, &left), (10.3, Some(9.7)), "left-handed");
+    left.hands[1].grip = None;
+    assert_eq!(x(&participant, &left), (9.7, None), "one hand alone");
+    left.head = None;
+    assert!(participant.arms(&left, rig).is_none());
+}

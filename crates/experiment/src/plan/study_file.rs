@@ -88,6 +88,35 @@ pub struct SessionRules {
     pub undue_presses_allowed: bool,
     /// Answer to a question about sickness, 1 to 7, from which on ending the session is advised.
     pub sickness_stop: u8,
+    /// What helps a participant besides the training throws; a plan that does not say has nothing of it.
+    #[serde(default)]
+    pub guidance: Guidance,
+}
+
+/// What helps a newcomer. All of it is off unless a plan has it: it tells how to play, and of a release what only the eye is to tell.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Guidance {
+    /// What the hand could take, or holds, glows.
+    pub glow: bool,
+    /// Hints in the room until the first throw is over.
+    pub hints: bool,
+    /// How a ball was let go, on the scoreboard.
+    pub feedback: bool,
+    /// One gesture measures height and reach, and places what must be reached.
+    pub calibration: bool,
+}
+
+impl Guidance {
+    /// The settings of the program that it stands for, with their values.
+    pub fn settings(self) -> [(&'static str, bool); 4] {
+        [
+            ("guidance.glow", self.glow),
+            ("guidance.hints", self.hints),
+            ("guidance.feedback", self.feedback),
+            ("calibration.gesture", self.calibration),
+        ]
+    }
 }
 
 impl Default for SessionRules {
@@ -100,6 +129,7 @@ impl Default for SessionRules {
             items_after_each_game: false,
             undue_presses_allowed: false,
             sickness_stop: 5,
+            guidance: Guidance::default(),
         }
     }
 }
@@ -373,6 +403,26 @@ pub(crate) mod tests {
                 .unwrap_err()
                 .to_string()
                 .contains("staircase.catch_share is 2")
+        );
+    }
+
+    #[test]
+    fn a_plan_that_says_nothing_of_guidance_has_none() {
+        let (made, _) = plan(18, 1997, about(), SessionRules::default()).unwrap();
+        let text = made.to_toml();
+        let section = "[session.guidance]\nglow = false\nhints = false\nfeedback = false\ncalibration = false\n";
+        assert!(text.contains(section), "{text}");
+        let parse = |text: &str| Plan::parse(text, Path::new("study.toml"));
+        assert_eq!(parse(&text.replace(section, "")).unwrap(), made);
+        let asked = parse(&text.replace("hints = false", "hints = true")).unwrap();
+        assert_eq!(
+            asked.session.guidance.settings().map(|(_, is_on)| is_on),
+            [false, true, false, false]
+        );
+        let error = parse(&text.replace("hints = false", "hint = true")).unwrap_err();
+        assert!(
+            error.to_string().contains("unknown field `hint`"),
+            "{error}"
         );
     }
 

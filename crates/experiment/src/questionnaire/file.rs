@@ -296,7 +296,7 @@ impl Kind {
 }
 
 /// Whether a text has the word that a participant must not read.
-pub(crate) fn names_the_purpose(text: &str) -> bool {
+pub fn names_the_purpose(text: &str) -> bool {
     text.to_lowercase().contains("presence")
 }
 

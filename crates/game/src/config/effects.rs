@@ -57,7 +57,7 @@ pub struct OilConfig {
 
 impl OilConfig {
     /// The factor at `x` and `down` the lane [m] from the middle of the foul line, on a lane that is `width` wide [m].
-    fn factor(&self, x: f64, down: f64, width: f64) -> f64 {
+    pub fn factor(&self, x: f64, down: f64, width: f64) -> f64 {
         let (flat, half) = (self.flat_width_m / 2.0, width / 2.0);
         let outwards = ((x.abs() - flat) / (half - flat)).clamp(0.0, 1.0);
         let across = self.middle_factor + (self.edge_factor - self.middle_factor) * outwards;

@@ -76,5 +76,8 @@ pub(super) fn validate(config: &Config) -> Result<(), Invalid> {
     session::pinsetter(config)?;
     session::display(config)?;
     session::participant(config)?;
-    session::sound(&config.sound)
+    session::sound(&config.sound)?;
+    session::guidance(&config.guidance)?;
+    session::comfort(config)?;
+    session::practice(&config.practice)
 }

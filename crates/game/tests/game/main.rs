@@ -7,6 +7,10 @@ mod assist;
 mod contacts;
 /// Whole throws.
 mod let_go;
+/// What helps a newcomer.
+mod newcomer;
+/// A pause, and the way back to the start.
+mod pause;
 mod play;
 /// Tracking space is laid anew.
 mod recentre;

@@ -9,6 +9,7 @@
 
 mod actions;
 mod begin;
+mod bounds;
 mod error;
 mod eyes;
 mod frame;
@@ -23,6 +24,7 @@ mod space;
 mod vulkan;
 
 pub use self::actions::{Change, HandReading, Readings, Side};
+pub use self::bounds::Bounds;
 pub use self::error::HeadsetError;
 pub use self::frame::Frame;
 pub use self::joints::BareHand;
@@ -30,6 +32,11 @@ pub use self::note::{Focus, Note};
 pub use self::runtime::probe;
 pub use self::session::{HeadsetSession, HeadsetSettings, Seen, Shown};
 pub use self::space::TrackedPose;
+
+/// Whether a controller of the profile with this path has a button that pauses, on either hand.
+pub fn has_menu_button(profile: &str) -> bool {
+    profiles::has_menu(profile)
+}
 
 /// A headset that an OpenXR runtime offers.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -170,6 +170,12 @@ pub(super) const PROFILES: [Profile; 14] = {
     ]
 };
 
+/// Whether a controller of this profile has a button that pauses, on either hand.
+pub(super) fn has_menu(path: &str) -> bool {
+    let profile = PROFILES.iter().find(|profile| profile.path == path);
+    profile.is_some_and(|profile| profile.bindings().any(|(asked, _)| asked == Menu))
+}
+
 #[cfg(test)]
 mod tests {
     use std::collections::HashSet;
@@ -272,6 +278,18 @@ mod tests {
                 assert_eq!(paths(Pad).len(), paths(PadClick).len(), "{at}: pad");
             }
         }
+    }
+
+    /// Of those without one the system takes the button, or there is none.
+    #[test]
+    fn profiles_without_a_menu_button_are_known() {
+        let without: Vec<&str> = PROFILES
+            .iter()
+            .filter(|profile| !has_menu(profile.path))
+            .map(|profile| profile.name)
+            .collect();
+        assert_eq!(without, ["Valve Index", "generic controller", "bare hand"]);
+        assert!(!has_menu("/interaction_profiles/unknown"));
     }
 
     #[test]

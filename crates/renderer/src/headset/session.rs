@@ -16,7 +16,7 @@ use super::joints::Joints;
 use super::note::{Focus, Note};
 use super::runtime::{Runtime, STEREO};
 use super::vulkan::{self, Vulkan};
-use super::{Headset, HeadsetError, space};
+use super::{Headset, HeadsetError, bounds, space};
 use crate::Gpu;
 
 pub use picture::{Seen, Shown};
@@ -40,6 +40,8 @@ pub struct HeadsetSession {
     /// Which of the runtime's spaces `base` is.
     floor: xr::ReferenceSpaceType,
     base: xr::Space,
+    /// The space of the bounds.
+    stage: Option<xr::Space>,
     head: xr::Space,
     stream: xr::FrameStream<xr::Vulkan>,
     waiter: xr::FrameWaiter,
@@ -69,6 +71,7 @@ impl HeadsetSession {
         let base = session.create_reference_space(floor, xr::Posef::IDENTITY)?;
         let head =
             session.create_reference_space(xr::ReferenceSpaceType::VIEW, xr::Posef::IDENTITY)?;
+        let stage = bounds::stage(&session)?;
         let blends = runtime
             .instance
             .enumerate_environment_blend_modes(runtime.system, STEREO)?;
@@ -99,6 +102,7 @@ impl HeadsetSession {
             is_bare: [false; 2],
             floor,
             base,
+            stage,
             head,
             stream,
             waiter,
@@ -120,6 +124,11 @@ impl HeadsetSession {
     /// The headset and its runtime.
     pub fn headset(&self) -> &Headset {
         &self.runtime.headset
+    }
+
+    /// The session, the space of its bounds and the one that everything is told in.
+    pub(super) fn stage(&self) -> Option<(&xr::Session<xr::Vulkan>, &xr::Space, &xr::Space)> {
+        Some((&self.session, self.stage.as_ref()?, &self.base))
     }
 
     /// Whether the runtime wants frames.

@@ -6,6 +6,7 @@ pub(crate) mod lit;
 pub(crate) mod mirror;
 pub(crate) mod present;
 pub(crate) mod shadow;
+pub(crate) mod vignette;
 
 use crate::mesh::Vertex;
 use crate::scene::{Instance, Material, MeshId, Pattern, TextureId};

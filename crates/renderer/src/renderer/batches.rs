@@ -16,6 +16,8 @@ pub(super) struct Frame {
     pub background: [f32; 3],
     /// What this frame looks up; `None` when it is drawn flat.
     pub lookups: Option<Lookups>,
+    /// Whether the picture's edge is dark.
+    pub has_vignette: bool,
 }
 
 impl Renderer {

@@ -131,6 +131,9 @@ impl Renderer {
                 white: &self.white,
             },
         );
+        if let (true, Some(pass)) = (self.frame.has_vignette, &self.vignette) {
+            pass.record(encoder, index, eye.color);
+        }
         if let (Some(pass), Some(depth)) = (&self.depth, eye.depth) {
             pass.record(encoder, depth);
         }

@@ -5,7 +5,7 @@ use image::{Rgba, RgbaImage};
 
 use super::*;
 use crate::passes::hidden::HiddenMesh;
-use crate::scene::{Instance, Light, LightSource, Material, MeshId, Occluder, TextureId};
+use crate::scene::{Instance, Light, LightSource, Material, MeshId, Occluder, TextureId, Vignette};
 use crate::{BackendChoice, Fov, MeshData};
 
 fn renderer(settings: RendererSettings) -> Renderer {
@@ -254,4 +254,25 @@ fn update_texture_takes_another_size() {
     renderer.update_texture(id, &large).expect("other size");
     assert!(renderer.update_texture(TextureId(5), &small).is_err());
     assert!(renderer.add_texture(&RgbaImage::new(0, 3)).is_err());
+}
+
+/// What no scene calls for has no pass; what one calls for draws over every view.
+#[test]
+fn a_vignette_is_made_when_a_scene_calls_for_it() {
+    let mut renderer = renderer(RendererSettings::default());
+    let mesh = renderer.add_mesh(&MeshData::quad(1.0, 1.0)).expect("good");
+    let mut scene = called_for(vec![instance(mesh)], None);
+    let mut drawn = |vignette: Option<Vignette>| {
+        scene.vignette = vignette;
+        let images = renderer.render(&scene, &[view(), view()], 32, 16);
+        assert_eq!(images.expect("drawn").len(), 2);
+        renderer.passes().contains(&"vignette")
+    };
+    let with = |strength| Vignette {
+        clear: 0.3,
+        strength,
+    };
+    assert!(!drawn(None));
+    assert!(!drawn(Some(with(0.0))));
+    assert!(drawn(Some(with(0.8))));
 }

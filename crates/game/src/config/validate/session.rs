@@ -1,7 +1,9 @@
 //! Which steps, rules, machines, displays and scripted participants are possible.
 
 use super::{Invalid, limited, ranges, relation};
-use crate::config::{Config, CoulombConfig, DisplayProfile, SoundConfig};
+use crate::config::{
+    Config, CoulombConfig, DisplayProfile, GuidanceConfig, PracticeConfig, SoundConfig,
+};
 
 /// How the world steps, of what it is made, and how often it is looked at.
 pub(super) fn physics(config: &Config) -> Result<(), Invalid> {
@@ -64,6 +66,57 @@ pub(super) fn sound(sound: &SoundConfig) -> Result<(), Invalid> {
             ("reverberation_s", sound.reverberation_s, 0.1, 5.0),
             ("lookahead_s", sound.lookahead_s, 0.0, 0.5),
         ],
+    )
+}
+
+/// Words that can be looked for.
+pub(super) fn guidance(guidance: &GuidanceConfig) -> Result<(), Invalid> {
+    relation(
+        "guidance",
+        "words",
+        &[],
+        !guidance.words.trim().is_empty(),
+        "must name a file of the folder config, such as \"words.toml\"",
+    )
+}
+
+/// Gestures that can be made, fences that can be seen.
+pub(super) fn comfort(config: &Config) -> Result<(), Invalid> {
+    let (body, comfort) = (&config.calibration, &config.comfort);
+    ranges(
+        "calibration",
+        &[
+            ("hold_s", body.hold_s, 0.2, 10.0),
+            ("still_m", body.still_m, 0.005, 0.5),
+            ("seated_below_m", body.seated_below_m, 0.5, 2.0),
+            ("eye_height_m", body.eye_height_m, 1.0, 2.2),
+        ],
+    )?;
+    let [width, depth] = comfort.space_m;
+    ranges(
+        "comfort",
+        &[
+            ("fence_from_m", comfort.fence_from_m, 0.05, 2.0),
+            ("space_m", width, 0.0, 100.0),
+            ("space_m", depth, 0.0, 100.0),
+            ("vignette_clear_deg", comfort.vignette_clear_deg, 5.0, 60.0),
+        ],
+    )
+}
+
+/// Leaves of pins that there are.
+pub(super) fn practice(practice: &PracticeConfig) -> Result<(), Invalid> {
+    let leave = &practice.leave;
+    let is_leave = leave
+        .iter()
+        .enumerate()
+        .all(|(at, pin)| (1..=crate::PINS).contains(pin) && !leave[..at].contains(pin));
+    relation(
+        "practice",
+        "leave",
+        &[],
+        is_leave,
+        "must list pins by their numbers from 1 to 10, each once",
     )
 }
 
