@@ -69,6 +69,8 @@ pub struct Script {
     waited: f64,
     /// Throws to make before the first game.
     practice: u32,
+    /// It has looked at the game before.
+    has_begun: bool,
 }
 
 /// What the participant sees in one frame.
@@ -136,6 +138,7 @@ impl Script {
             trigger: 0.0,
             waited: 0.0,
             practice: 0,
+            has_begun: false,
             person,
             body,
         }
@@ -151,7 +154,10 @@ impl Script {
     /// Remembers what matters later from what has just happened.
     fn notice(&mut self, game: &Game) {
         self.waited += self.dt;
-        for event in game.events() {
+        // What a game that is taken up again told last was before this participant's time.
+        let is_own = std::mem::replace(&mut self.has_begun, true);
+        let events = if is_own { game.events() } else { &[] };
+        for event in events {
             match &event.kind {
                 EventKind::GameStarted { button } => self.games.retain(|wanted| wanted != button),
                 EventKind::Released(_) => self.waited = 0.0,
@@ -356,5 +362,37 @@ impl Device for Script {
 
     fn is_done(&self) -> bool {
         self.games.is_empty() && self.practice == 0 && self.has_finished
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use game::Conditions;
+    use std::path::Path;
+
+    /// A session was broken off right behind a throw: whoever goes on has not made it.
+    #[test]
+    fn a_throw_before_its_time_is_not_counted() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("config");
+        let conditions = Conditions::load(&folder, "test", &[]).unwrap();
+        let config = conditions.lobby.clone();
+        let person = || Script::new(&config, 4, Velocities::Measured, &[]).practising(1);
+        let mut game = Game::new(conditions, 1).unwrap();
+        let mut first = person();
+        let is_settled = |game: &Game| {
+            let mut events = game.events().iter();
+            events.any(|event| matches!(event.kind, EventKind::Settled { .. }))
+        };
+        while !is_settled(&game) {
+            let input = first.next(&game);
+            game.step(&input);
+            assert!(game.time() < 120.0, "no throw");
+        }
+        let mut second = person();
+        second.next(&game);
+        assert!(!second.is_done(), "it has a throw to make");
+        first.next(&game);
+        assert!(first.is_done(), "the other has made it");
     }
 }
