@@ -217,6 +217,35 @@ fn throws_do_not_depend_on_the_number_of_threads() {
 }
 
 #[test]
+fn a_series_can_be_thrown_in_pieces() {
+    let run = |first, repeat| {
+        let piece = ["--first", first, "--repeat", repeat];
+        let jitter = ["--jitter-offset", "0.1", "--duration", "0.5"];
+        let throws = throws(&[&piece[..], &jitter].concat());
+        throws.into_iter().map(stripped).collect::<Vec<_>>()
+    };
+    let whole = run("0", "6");
+    assert_eq!(
+        [run("0", "2"), run("2", "3"), run("5", "1")].concat(),
+        whole
+    );
+}
+
+#[test]
+fn where_nothing_turns_the_first_hit_turns_nothing() {
+    let effects = r#"physics.effects=["gravity","elasticity","friction","continuous","sleeping"]"#;
+    let smooth = ["--friction-rate", "0", "--set", effects];
+    let throw = throw(&[&["--offset", "0.05", "--duration", "0.5"][..], &smooth].concat());
+    for body in ["ball_after", "pin_after"] {
+        let angular = throw[body]["angular"].as_array().expect("it hit");
+        assert!(
+            angular.iter().all(|value| value.as_f64() == Some(0.0)),
+            "{body}: {angular:?}"
+        );
+    }
+}
+
+#[test]
 fn throws_without_jitter_are_all_the_same() {
     let many = throws(&["--offset", "0.05", "--repeat", "4", "--duration", "1"]);
     let first = stripped(throw(&["--offset", "0.05", "--duration", "1"]));
@@ -294,7 +323,9 @@ fn the_distribution_counts_every_throw() {
         "--repeat",
         "20",
         "--jitter-offset",
-        "0.3",
+        "0.08",
+        "--offset",
+        "0.26",
         "--pins",
         "1,2,3",
         "--duration",
@@ -500,7 +531,7 @@ fn a_record_that_cannot_be_written_is_named() {
 
 #[test]
 fn bad_arguments_end_with_code_2_and_a_sentence() {
-    let cases: [(&[&str], &str); 18] = [
+    let cases: [(&[&str], &str); 21] = [
         (&["--speed", "0"], "--speed"),
         (&["--speed", "nan"], "--speed"),
         (&["--speed", "-8"], "--speed"),
@@ -517,8 +548,17 @@ fn bad_arguments_end_with_code_2_and_a_sentence() {
         (&["--model", "newton"], "--model"),
         (&["--elasticity", "1.1"], "--elasticity"),
         (&["--repeat", "0"], "--repeat"),
+        (&["--first", "-1"], "--first"),
         (&["--speed", "2", "--jitter-speed", "0.5"], "--jitter-speed"),
         (&["--set", "physics.step_hz=60"], "--frame-rate"),
+        (
+            &["--jitter-offset", "0.5", "--repeat", "40"],
+            "--jitter-offset 0.5 begins throw",
+        ),
+        (
+            &["--mu", "0.1", "--set", "coulomb.ball_pin.friction=0.2"],
+            "leave out it or --set",
+        ),
     ];
     for (arguments, words) in cases {
         let output = shot(arguments);

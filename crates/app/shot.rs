@@ -32,26 +32,15 @@ pub fn shot(arguments: &ShotArguments, root: &Path) -> Result<()> {
     let alley = alley(&arguments.throw, root)?;
     // Found out before anything is thrown.
     check_lane(arguments, &alley)?;
-    Flight::begin(&alley, &release(arguments, 0, false)).map_err(unusable)?;
-    let printed = if arguments.repeat > 1 {
-        many(arguments, &alley)
-    } else {
-        let shot = match &arguments.record {
-            Some(file) => recorded(arguments, &alley, file)?,
-            None => throw(arguments, &alley, 0)?,
-        };
-        print(arguments, &mut io::stdout().lock(), &shot)
-    };
-    match printed {
-        // Whoever reads has read enough, as `head` does.
-        Err(error) if is_closed(&error) => Ok(()),
-        printed => printed,
+    Flight::begin(&alley, &release(arguments, arguments.first, false)).map_err(unusable)?;
+    if arguments.repeat > 1 {
+        return many(arguments, &alley);
     }
-}
-
-fn is_closed(error: &anyhow::Error) -> bool {
-    let error = error.downcast_ref::<io::Error>();
-    error.is_some_and(|error| error.kind() == io::ErrorKind::BrokenPipe)
+    let shot = match &arguments.record {
+        Some(file) => recorded(arguments, &alley, file)?,
+        None => throw(arguments, &alley, arguments.first)?,
+    };
+    print(arguments, &mut io::stdout().lock(), &shot)
 }
 
 /// A ball begins on the lane, which reaches back to the wall behind the approach.
@@ -69,7 +58,16 @@ fn check_lane(arguments: &ShotArguments, alley: &BareAlley) -> Result<()> {
         let start = arguments.throw.start;
         format!("--start {start} lies beyond the lane's ends: give from {near:.3} to {far:.3}")
     } else {
-        return Ok(());
+        // All of them before the first is thrown, which may be hours before the last.
+        let offset = |index| release(arguments, index, true).offset;
+        let mut throws = arguments.first..arguments.first + arguments.repeat;
+        let Some(index) = throws.find(|index| offset(*index).abs() >= half) else {
+            return Ok(());
+        };
+        let (jitter, offset) = (arguments.jitter_offset, offset(index));
+        format!(
+            "--jitter-offset {jitter} begins throw {index} at {offset:.3} m, beside the lane: give less"
+        )
     };
     Err(unusable(problem).into())
 }
@@ -88,7 +86,7 @@ fn many(arguments: &ShotArguments, alley: &BareAlley) -> Result<()> {
     let mut output = BufWriter::new(io::stdout().lock());
     let mut distribution = Distribution::new(alley.pins().len());
     let threads = series::threads(arguments.throw.threads);
-    let throw = |index| throw(arguments, alley, index);
+    let throw = |index| throw(arguments, alley, arguments.first + index);
     series::run(arguments.repeat, threads, throw, |shot| {
         let shot = shot?;
         if arguments.json {
@@ -111,7 +109,7 @@ pub fn fallen_counts(arguments: &ShotArguments, root: &Path) -> Result<Vec<usize
     let alley = alley(&arguments.throw, root)?;
     let threads = series::threads(arguments.throw.threads);
     let mut counts = Vec::new();
-    let throw = |index| throw(arguments, &alley, index);
+    let throw = |index| throw(arguments, &alley, arguments.first + index);
     series::run(arguments.repeat, threads, throw, |shot| {
         counts.push(shot?.outcome.fallen.len());
         anyhow::Ok(())
@@ -151,14 +149,14 @@ fn throw(arguments: &ShotArguments, alley: &BareAlley, index: u64) -> Result<Sho
 
 /// The same, with every state kept in a file.
 fn recorded(arguments: &ShotArguments, alley: &BareAlley, file: &Path) -> Result<Shot> {
-    let release = release(arguments, 0, true);
+    let release = release(arguments, arguments.first, true);
     let mut flight = Flight::begin(alley, &release)?;
     let mut record = record::Record::begin(file, &flight, &release)?;
     for _ in 0..steps(&arguments.throw) {
         flight.run(1);
         record.state(&flight)?;
     }
-    let shot = shot_of(0, release, &flight, alley);
+    let shot = shot_of(arguments.first, release, &flight, alley);
     record.end(&shot)?;
     Ok(shot)
 }

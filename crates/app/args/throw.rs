@@ -144,6 +144,10 @@ pub struct ShotArguments {
     #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
     pub repeat: u64,
 
+    /// Number of the first of them: a long series can be thrown in pieces, and any throw of it once more.
+    #[arg(long, value_name = "K", allow_negative_numbers = true, default_value_t = 0, value_parser = clap::value_parser!(u64).range(0..=100_000_000))]
+    pub first: u64,
+
     /// Print JSON lines, one object a throw.
     #[arg(long)]
     pub json: bool,

@@ -38,6 +38,17 @@ fn config(arguments: &ThrowArguments, root: &Path) -> Result<Config> {
             let problem = format!("--set {key} has an argument of its own here: give {argument}");
             return Err(unusable(problem).into());
         }
+        let of_table = |name: &str| key.starts_with("coulomb.") && key.ends_with(name);
+        for (name, argument, value) in [
+            ("restitution", "--restitution", arguments.restitution),
+            ("friction", "--mu", arguments.mu),
+        ] {
+            if of_table(name) && value.is_some() {
+                let problem =
+                    format!("{argument} gives every pair its value: leave out it or --set {key}");
+                return Err(unusable(problem).into());
+            }
+        }
     }
     let folder = root.join("config");
     let mut config = Config::load(&folder, &arguments.scene, None, &arguments.settings)?;
@@ -76,6 +87,10 @@ fn note_unused(arguments: &ThrowArguments) {
         ("--restitution", arguments.restitution, !is_coulomb),
         ("--mu", arguments.mu, !is_coulomb),
     ];
+    let is_table = |setting: &&String| setting.trim_start().starts_with("coulomb.");
+    if !is_coulomb && arguments.settings.iter().any(|setting| is_table(&setting)) {
+        eprintln!("note: the table [coulomb] belongs to coulomb; this model does not read it");
+    }
     for (name, value, is_unused) in unused {
         if is_unused && value.is_some() {
             let laws = if is_coulomb {

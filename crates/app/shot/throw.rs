@@ -2,7 +2,7 @@
 
 use game::{BareAlley, BareAlleyError};
 use glam::{DQuat, DVec3};
-use physics::{Body, BodyId, Impact, Motion, Pose, World};
+use physics::{Body, BodyId, Effect, Impact, Motion, Pose, World};
 use serde::{Deserialize, Serialize};
 
 use super::clock::thread_seconds;
@@ -166,11 +166,13 @@ impl Flight {
         let linear = before.linear_velocity();
         let way = (centre - before.pose().position).dot(linear) / linear.length_squared();
         let impulses = &world.impacts()[..=index];
+        let turns = world.settings().effects.contains(Effect::Rotation);
         let ball = State {
             body: &before,
             pose: Pose::new(centre, before.pose().rotation),
             linear,
             angular: before.angular_velocity(),
+            turns,
         };
         // Nothing has met the pin yet: it stands.
         let standing = State {
@@ -178,6 +180,7 @@ impl Flight {
             pose: *stood,
             linear: DVec3::ZERO,
             angular: DVec3::ZERO,
+            turns,
         };
         self.first_hit = Some(FirstHit {
             pin: *number,
@@ -207,6 +210,8 @@ struct State<'a> {
     pose: Pose,
     linear: DVec3,
     angular: DVec3,
+    /// Whether the scene has bodies turn.
+    turns: bool,
 }
 
 impl State<'_> {
@@ -221,6 +226,9 @@ impl State<'_> {
                 -impact.impulse
             };
             linear += impulse / mass.mass;
+            if !self.turns {
+                continue;
+            }
             let turn = (impact.point - self.pose.position).cross(impulse);
             let local = self.pose.rotation.conjugate() * turn;
             angular += self.pose.rotation * (local / mass.inertia);
