@@ -27,8 +27,9 @@ pub struct Health {
 
 #[derive(Debug, Default, Clone, Copy)]
 struct Tracking {
-    /// Whether it was tracked before, and how long it has been lost now [s].
+    /// Whether it was tracked before, whether it is lost now, and since when [s].
     was_tracked: bool,
+    is_missing: bool,
     missing_s: f64,
     losses: u32,
     lost_s: f64,
@@ -37,14 +38,17 @@ struct Tracking {
 impl Tracking {
     fn follow(&mut self, is_tracked: bool, seconds: f64) {
         if is_tracked {
-            self.was_tracked = true;
-            self.missing_s = 0.0;
+            *self = Self {
+                was_tracked: true,
+                is_missing: false,
+                missing_s: 0.0,
+                ..*self
+            };
             return;
         }
         // What was never tracked is not lost.
-        if self.was_tracked && self.missing_s == 0.0 {
-            self.losses += 1;
-        }
+        self.losses += u32::from(self.was_tracked && !self.is_missing);
+        self.is_missing = true;
         self.missing_s += seconds;
         if self.was_tracked {
             self.lost_s += seconds;
@@ -52,10 +56,10 @@ impl Tracking {
     }
 
     fn text(&self) -> String {
-        let now = match (self.was_tracked, self.missing_s) {
+        let now = match (self.was_tracked, self.is_missing) {
             (false, _) => "not tracked yet".to_owned(),
-            (true, 0.0) => "tracked".to_owned(),
-            (true, missing) => format!("LOST for {missing:.0} s"),
+            (true, false) => "tracked".to_owned(),
+            (true, true) => format!("LOST for {:.0} s", self.missing_s),
         };
         match self.losses {
             0 => now,
@@ -66,8 +70,11 @@ impl Tracking {
 }
 
 impl Health {
-    /// Takes notice of a frame's input, which lasts `seconds`.
+    /// Takes notice of a frame's input, which lasts `seconds`. In a pause the hand is gone because nobody plays.
     pub fn follow(&mut self, input: &Input, seconds: f64) {
+        if input.paused {
+            return;
+        }
         let [head, hand] = &mut self.tracked;
         head.follow(input.head.is_some(), seconds);
         hand.follow(input.hand.is_some(), seconds);
@@ -192,6 +199,25 @@ mod tests {
         assert_eq!(lines[0], "Head tracked.");
         // The half second is rounded to an even number.
         assert_eq!(lines[1], "Hand LOST for 0 s (lost 2 times, 1.5 s in all).");
+    }
+
+    #[test]
+    fn a_pause_is_no_loss_and_a_loss_without_time_is_one() {
+        let mut health = Health::default();
+        health.follow(&input(true), 0.5);
+        let pause = Input {
+            paused: true,
+            ..Input::default()
+        };
+        for _ in 0..10 {
+            health.follow(&pause, 0.0);
+        }
+        assert_eq!(health.lines(Instant::now())[1], "Hand tracked.");
+        for _ in 0..10 {
+            health.follow(&input(false), 0.0);
+        }
+        let lines = health.lines(Instant::now());
+        assert_eq!(lines[1], "Hand LOST for 0 s (lost once, 0.0 s).");
     }
 
     #[test]
