@@ -1,8 +1,15 @@
 //! Chooses who bowls and where it is shown, and says why in one sentence.
 
+use std::time::Duration;
+
 use anyhow::{Result, bail};
+use renderer::headset::{Found, HeadsetError};
 
 use crate::args::DeviceChoice;
+use crate::headset::answered;
+
+/// How long a runtime may take to say whether it has a headset: some start their programs first.
+const LONGEST_SILENCE: Duration = Duration::from_secs(20);
 
 /// What the program will run with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,17 +34,33 @@ pub struct Machine {
 }
 
 impl Machine {
-    /// Looks for a headset runtime and for a display server.
-    pub fn look() -> Self {
-        let headset = match renderer::headset::probe() {
-            Ok(found) => Ok(format!("{} on {}", found.system, found.runtime)),
-            Err(error) => Err(error.to_string()),
+    /// Looks for a display server and, where a headset may be chosen, for one: asking for it may start its runtime.
+    pub fn look(device: Option<DeviceChoice>, offscreen: bool) -> (Self, Option<Found>) {
+        let may_be_headset = !offscreen && matches!(device, None | Some(DeviceChoice::Headset));
+        let asked = may_be_headset.then(find);
+        let (headset, found) = match asked {
+            Some(Ok(found)) => {
+                let headset = found.headset();
+                let name = format!("{} on {}", headset.system, headset.runtime);
+                (Ok(name), Some(found))
+            }
+            Some(Err(error)) => (Err(error.to_string()), None),
+            None => (Err("none was asked for".to_owned()), None),
         };
-        Machine {
+        let machine = Machine {
             headset,
             window: display(),
-        }
+        };
+        (machine, found)
     }
+}
+
+/// Finds the headset, in a runtime that answers.
+///
+/// # Errors
+/// Why there is none.
+pub fn find() -> Result<Found, HeadsetError> {
+    answered(LONGEST_SILENCE, || false, Found::look).unwrap_or(Err(HeadsetError::Silent))
 }
 
 /// Whether a window can be hoped for on this machine.

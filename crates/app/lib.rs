@@ -20,6 +20,7 @@ pub mod headset;
 pub mod hints;
 pub mod journal;
 pub mod labels;
+pub mod lettering;
 pub mod look;
 pub mod motion;
 pub mod output;
@@ -39,6 +40,7 @@ pub mod signs;
 pub mod sound;
 pub mod strike_map;
 pub mod study;
+pub mod voice;
 pub mod window;
 pub mod words;
 pub mod wrist;
@@ -75,12 +77,20 @@ pub fn run(arguments: impl Iterator<Item = OsString>) -> ExitCode {
             eprint!("{error}");
             ExitCode::from(BAD_ARGUMENTS)
         }
+        // Whoever reads has read enough, as `head` does.
+        Err(error) if is_closed(&error) => ExitCode::SUCCESS,
         Err(error) => {
             // The whole chain in one line: what was tried, then why it failed.
             eprintln!("error: {error:#}");
             ExitCode::FAILURE
         }
     }
+}
+
+/// Whether the reader of the output has gone. Nothing else of the program writes into a pipe.
+fn is_closed(error: &anyhow::Error) -> bool {
+    let error = error.downcast_ref::<std::io::Error>();
+    error.is_some_and(|error| error.kind() == std::io::ErrorKind::BrokenPipe)
 }
 
 fn obey(arguments: &Arguments) -> Result<()> {

@@ -14,6 +14,7 @@ use glam::{DQuat, DVec2, DVec3, Mat4, Quat, Vec3};
 use physics::Pose;
 use renderer::{Gpu, Instance, Material, MeshData, MeshId, Renderer, TextPainter, TextureId};
 
+use crate::lettering::{Letters, Scribe};
 use crate::session::Session;
 use crate::words::Words;
 pub use layout::Choice;
@@ -224,13 +225,15 @@ pub(crate) fn share(panel: &Pose, size: DVec2, eye: DVec3, hand: DVec3) -> Optio
 
 /// The panel's mesh and picture, held by a renderer.
 pub struct PanelStock {
-    painter: TextPainter,
+    letters: Letters<()>,
     quad: MeshId,
     dot: MeshId,
     texture: TextureId,
     stop: (MeshId, TextureId),
-    /// What the picture shows.
-    painted: Option<Content>,
+    /// What was painted last, or is being painted.
+    asked: Option<Content>,
+    /// Whether the picture shows anything yet.
+    is_painted: bool,
 }
 
 impl PanelStock {
@@ -244,7 +247,7 @@ impl PanelStock {
         let mut painter = TextPainter::new(gpu);
         let sign = paint::stop_sign(&mut painter, &words.stop_sign)?;
         Ok(Self {
-            painter,
+            letters: Letters::here(gpu),
             stop: (
                 renderer.add_mesh(&MeshData::quad(stop_size.x, stop_size.y))?,
                 renderer.add_texture(&sign)?,
@@ -252,8 +255,14 @@ impl PanelStock {
             quad: renderer.add_mesh(&MeshData::quad(size.x, size.y))?,
             dot: renderer.add_mesh(&MeshData::quad(2.0 * DOT_M, 2.0 * DOT_M))?,
             texture: renderer.add_texture(&renderer::RgbaImage::new(1, 1))?,
-            painted: None,
+            asked: None,
+            is_painted: false,
         })
+    }
+
+    /// Has questions painted by somebody else: the last one is seen until the next is done.
+    pub fn paint_apart(&mut self, scribe: &Scribe) {
+        self.letters = Letters::apart(scribe);
     }
 
     /// What is to be drawn of `panel`; paints its picture when it has changed.
@@ -273,15 +282,20 @@ impl PanelStock {
         let Some(shown) = &panel.shown else {
             return Ok(instances);
         };
-        if self.painted.as_ref() != Some(&shown.content) {
-            let image = paint::paint(
-                &mut self.painter,
-                &shown.content,
-                &shown.layout,
-                &panel.words.panel,
-            )?;
-            renderer.update_texture(self.texture, &image)?;
-            self.painted = Some(shown.content.clone());
+        if self.asked.as_ref() != Some(&shown.content) {
+            let (content, layout) = (shown.content.clone(), shown.layout.clone());
+            let words = panel.words.panel.clone();
+            self.asked = Some(content.clone());
+            self.letters.ask((), move |painter| {
+                paint::paint(painter, &content, &layout, &words)
+            })?;
+        }
+        while let Some(((), picture)) = self.letters.done()? {
+            renderer.update_picture(self.texture, &picture)?;
+            self.is_painted = true;
+        }
+        if !self.is_painted {
+            return Ok(instances);
         }
         instances.push(Instance {
             mesh: self.quad,

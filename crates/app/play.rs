@@ -29,7 +29,8 @@ const DEFAULT_SCENE: &str = "alley";
 /// # Errors
 /// One sentence for everything that keeps the session from its end.
 pub fn play(arguments: &PlayArguments, root: &Path) -> Result<()> {
-    let (choice, why) = choose::choose(arguments.device, arguments.offscreen, &Machine::look())?;
+    let (machine, found) = Machine::look(arguments.device, arguments.offscreen);
+    let (choice, why) = choose::choose(arguments.device, arguments.offscreen, &machine)?;
     println!("{why}");
     let scene = arguments
         .scene
@@ -79,7 +80,11 @@ pub fn play(arguments: &PlayArguments, root: &Path) -> Result<()> {
     };
     match choice {
         Choice::ScriptOffscreen => offscreen(setup, root, wanted),
-        Choice::Headset => headset::run(setup, root, wanted, arguments.refresh_rate, None),
+        Choice::Headset => {
+            let found = found.context("a headset is chosen only where one was found")?;
+            let headset = (found, headset::asking_for(arguments.refresh_rate));
+            headset::run(setup, root, wanted, headset, None)
+        }
         Choice::DeskWindow | Choice::ScriptWindow => window::run(setup, root, wanted, choice, None),
     }
 }

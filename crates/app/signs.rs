@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use glam::{DQuat, DVec3, Mat4, Quat, Vec3};
 use physics::Pose;
-use renderer::{
-    Gpu, Instance, Material, MeshData, MeshId, Renderer, TextBlock, TextPainter, TextureId,
-};
+use renderer::{Gpu, Instance, Material, MeshData, MeshId, Renderer, TextBlock, TextureId};
+
+use crate::lettering::{Letters, Scribe};
 
 /// Letters of a sign's picture [pixels]: twice what a headset of 25 pixels per degree shows of the largest.
 const LETTER_PX: f32 = 48.0;
@@ -58,11 +58,15 @@ pub fn facing(position: DVec3, eye: DVec3) -> Pose {
     }
 }
 
+/// What a sign's picture depends on.
+type Face = (String, Ground);
+
 /// Signs' pictures, held by a renderer; each text is painted once.
 pub struct SignStock {
-    painter: TextPainter,
+    letters: Letters<Face>,
     quad: MeshId,
-    pictures: BTreeMap<(String, Ground), (TextureId, Vec3)>,
+    /// Pictures and their sizes in letters; `None` while one is being painted.
+    pictures: BTreeMap<Face, Option<(TextureId, Vec3)>>,
 }
 
 impl SignStock {
@@ -72,10 +76,15 @@ impl SignStock {
     /// When the renderer takes no mesh.
     pub fn new(gpu: &Gpu, renderer: &mut Renderer) -> Result<Self> {
         Ok(Self {
-            painter: TextPainter::new(gpu),
+            letters: Letters::here(gpu),
             quad: renderer.add_mesh(&MeshData::quad(1.0, 1.0))?,
             pictures: BTreeMap::new(),
         })
+    }
+
+    /// Has signs painted by somebody else: they appear when they are done.
+    pub fn paint_apart(&mut self, scribe: &Scribe) {
+        self.letters = Letters::apart(scribe);
     }
 
     /// What is to be drawn of `signs`.
@@ -83,25 +92,43 @@ impl SignStock {
     /// # Errors
     /// When a sign cannot be painted.
     pub fn instances(&mut self, signs: &[Sign], renderer: &mut Renderer) -> Result<Vec<Instance>> {
-        signs
+        for sign in signs {
+            self.ask(sign)?;
+        }
+        while let Some((face, picture)) = self.letters.done()? {
+            let [width, height] = picture.size().map(|side| side as f32);
+            let size = Vec3::new(width, height, LETTER_PX) / LETTER_PX;
+            let texture = renderer.add_picture(&picture)?;
+            self.pictures.insert(face, Some((texture, size)));
+        }
+        Ok(signs
             .iter()
-            .map(|sign| self.instance(sign, renderer))
-            .collect()
+            .filter_map(|sign| self.instance(sign))
+            .collect())
     }
 
-    fn instance(&mut self, sign: &Sign, renderer: &mut Renderer) -> Result<Instance> {
-        let key = (sign.text.clone(), sign.ground);
-        let (texture, per_letter) = match self.pictures.get(&key) {
-            Some(picture) => *picture,
-            None => {
-                let picture = self.paint(sign, renderer)?;
-                self.pictures.insert(key, picture);
-                picture
-            }
+    /// Has a sign's picture painted, once.
+    fn ask(&mut self, sign: &Sign) -> Result<()> {
+        let face = (sign.text.clone(), sign.ground);
+        if self.pictures.contains_key(&face) {
+            return Ok(());
+        }
+        self.pictures.insert(face.clone(), None);
+        let block = TextBlock {
+            size_px: LETTER_PX,
+            padding_px: 18,
+            background: sign.ground.color(),
+            ..TextBlock::new(&sign.text)
         };
+        self.letters.ask(face, move |painter| painter.block(&block))
+    }
+
+    fn instance(&self, sign: &Sign) -> Option<Instance> {
+        let face = (sign.text.clone(), sign.ground);
+        let (texture, per_letter) = (*self.pictures.get(&face)?)?;
         let pose = &sign.pose;
         let rotation: Quat = pose.rotation.as_quat().normalize();
-        Ok(Instance {
+        Some(Instance {
             mesh: self.quad,
             material: Material {
                 texture: Some(texture),
@@ -115,21 +142,6 @@ impl SignStock {
                 pose.position.as_vec3(),
             ),
         })
-    }
-
-    /// A picture, and its size in letters.
-    fn paint(&mut self, sign: &Sign, renderer: &mut Renderer) -> Result<(TextureId, Vec3)> {
-        let image = self
-            .painter
-            .block(&TextBlock {
-                size_px: LETTER_PX,
-                padding_px: 18,
-                background: sign.ground.color(),
-                ..TextBlock::new(&sign.text)
-            })
-            .context("cannot paint a sign")?;
-        let size = Vec3::new(image.width() as f32, image.height() as f32, LETTER_PX) / LETTER_PX;
-        Ok((renderer.add_texture(&image)?, size))
     }
 }
 

@@ -3,7 +3,7 @@
 use game::Model;
 use renderer::headset::{BareHand, HandReading, HeadsetSession, HeadsetSettings};
 
-use crate::inside::{first_frame, is_inside, run_inside};
+use crate::inside::{first_frame, found, is_inside, run_inside};
 use crate::loss::play;
 use crate::machine::runtime;
 use crate::remote::{Packet, Remote};
@@ -15,7 +15,7 @@ const CURL: f64 = 0.5;
 
 /// Left and right hand as soon as the runtime sees the right one bare.
 fn hands() -> [HandReading; 2] {
-    let mut headset = HeadsetSession::open(HeadsetSettings::default()).expect("a headset");
+    let mut headset = HeadsetSession::open(found(), HeadsetSettings::default()).expect("a headset");
     first_frame(&mut headset, |headset, frame| {
         let readings = headset.read(&frame).expect("the service runs");
         headset.skip(frame).expect("the service runs");

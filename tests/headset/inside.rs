@@ -4,7 +4,7 @@ use std::ffi::OsStr;
 use std::time::{Duration, Instant};
 
 use renderer::glam::{Quat, Vec3};
-use renderer::headset::{Frame, HeadsetSession, HeadsetSettings, Seen};
+use renderer::headset::{Found, Frame, HeadsetSession, HeadsetSettings, Seen};
 use renderer::{Gpu, MeshData, MeshId, Renderer, RendererSettings, Scene, View};
 
 use crate::room::PATIENCE;
@@ -72,9 +72,14 @@ pub fn renderer_on(gpu: &Gpu) -> (Renderer, [MeshId; 2]) {
     (renderer, meshes)
 }
 
+/// The service's headset.
+pub fn found() -> Found {
+    Found::look().expect("a headset")
+}
+
 /// The first picture that the runtime wants of a scene, with its views.
 pub fn picture(scene: impl Fn([MeshId; 2]) -> Scene) -> ([View; 2], Vec<Seen>) {
-    let mut headset = HeadsetSession::open(HeadsetSettings::default()).expect("a headset");
+    let mut headset = HeadsetSession::open(found(), HeadsetSettings::default()).expect("a headset");
     let (mut renderer, meshes) = renderer_on(headset.gpu());
     let scene = scene(meshes);
     let mut show = |headset: &mut HeadsetSession, frame| {

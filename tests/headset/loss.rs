@@ -249,6 +249,43 @@ fn a_lost_hand_drops_the_ball_after_a_while() {
     played.end();
 }
 
+/// A runtime that hangs before anything has begun: one sentence, and on to whoever can play without a headset.
+#[test]
+fn a_runtime_that_hangs_at_the_start_is_done_without() {
+    let Some(runtime) = runtime() else { return };
+    let mut service = Service::start(&runtime, Compositor::Null);
+    service.stop();
+    let out = tempfile::tempdir().expect("a temporary folder");
+    let folder = out.path().join("session");
+    let folder = folder.to_str().expect("a plain path");
+    let arguments = ["play", "--frames", "1", "--no-video", "--out", folder];
+    let (status, said) = Client::start(&service, &arguments).wait();
+    assert!(status.success(), "{said}");
+    assert!(
+        said.contains("no headset (the OpenXR runtime does not answer: end it"),
+        "{said}"
+    );
+    service.cont();
+}
+
+/// A loader without a runtime: the sentence says how to get one.
+#[test]
+fn a_missing_runtime_is_named() {
+    let Some(runtime) = runtime() else { return };
+    let started = std::fs::read_to_string(runtime.join("ld")).expect("the script made it");
+    let elsewhere = started.replace("monado.json", "nothing.json");
+    assert_ne!(started, elsewhere, "it names the runtime");
+    let output = std::process::Command::new("sh")
+        .args(["-c", &elsewhere, "ld", env!("CARGO_BIN_EXE_bowling")])
+        .args(["play", "--device", "headset", "--no-video"])
+        .env("BOWLING_ROOT", env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .expect("a shell");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(!output.status.success());
+    assert!(said.contains("no OpenXR runtime is active"), "{said}");
+}
+
 /// Without a service: one sentence, and on to whoever can play without a headset.
 #[test]
 fn a_missing_service_is_named_and_done_without() {

@@ -295,7 +295,7 @@ impl Swing {
         let head = room.game.world_from_tracking() * room.packet.head;
         let side = if hand == Hand::Left { -0.2 } else { 0.2 };
         let shoulder = DVec3::new(head.position.x + side, 1.15, head.position.z - 0.1);
-        let held = room.game.hand_pose_world().expect("it is tracked");
+        let held = room.game.world_from_tracking() * room.hand(hand).pose;
         let model = room.game.held().expect("a ball is held");
         let things = room.game.visible();
         let ball = things

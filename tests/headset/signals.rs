@@ -3,6 +3,7 @@
 use rustix::process::{Pid, Signal, kill_process};
 
 use crate::shared::process::Process;
+use crate::shared::screen::Screen;
 
 impl Process {
     /// Its number.
@@ -28,5 +29,17 @@ impl Process {
             line.rsplit_once(") ")
                 .is_some_and(|(_, rest)| rest.starts_with('T'))
         })
+    }
+}
+
+impl Screen {
+    /// Holds it up: whoever draws on it, or asks it anything, waits.
+    pub fn stop(&mut self) {
+        self._server.signal(Signal::STOP);
+    }
+
+    /// Lets it go on.
+    pub fn cont(&mut self) {
+        self._server.signal(Signal::CONT);
     }
 }

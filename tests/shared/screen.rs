@@ -9,7 +9,7 @@ use super::process::Process;
 
 /// A screen whose picture lies in a file, for one test alone.
 pub struct Screen {
-    _server: Process,
+    pub _server: Process,
     display: String,
     folder: TempDir,
 }

@@ -1,10 +1,11 @@
 //! The scoreboard over the lane: both games and how the last ball was let go, painted by egui into a texture whenever they change.
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use game::{Button, Game, ScoreSheet, ThrowSeen};
 use renderer::egui::{self, Align2, Color32, FontId, Pos2, Rect, Stroke, StrokeKind, Vec2};
-use renderer::{Gpu, Renderer, RgbaImage, TextPainter, TextureId};
+use renderer::{Gpu, RenderError, Renderer, RgbaImage, TextPainter, TextureId};
 
+use crate::lettering::{Letters, Scribe};
 use crate::words::{Words, fill};
 
 /// Size of the picture [pixels]; its shape is the screen's.
@@ -91,7 +92,8 @@ impl Row {
 /// The board on its screen.
 pub(super) struct Board {
     texture: TextureId,
-    painter: TextPainter,
+    letters: Letters<()>,
+    /// What was painted last, or is being painted.
     shown: Scores,
     words: Words,
 }
@@ -108,36 +110,52 @@ impl std::fmt::Debug for Board {
 impl Board {
     /// A board with nothing on it yet.
     pub fn new(renderer: &mut Renderer, gpu: &Gpu, words: Words) -> Result<Self> {
-        let mut painter = TextPainter::new(gpu);
+        let mut letters = Letters::here(gpu);
         let shown = Scores::empty(game::MAX_FRAMES);
-        let image = paint(&mut painter, &shown, &words)?;
+        ask(&mut letters, &shown, &words)?;
+        let ((), picture) = letters.done()?.context("nobody painted the scoreboard")?;
         Ok(Self {
-            texture: renderer.add_texture(&image)?,
-            painter,
+            texture: renderer.add_picture(&picture)?,
+            letters,
             shown,
             words,
         })
+    }
+
+    /// From now on is painted by somebody else.
+    pub fn paint_apart(&mut self, scribe: &Scribe) {
+        self.letters = Letters::apart(scribe);
     }
 
     pub fn texture(&self) -> TextureId {
         self.texture
     }
 
-    /// Shows these scores, if others are shown.
+    /// Shows these scores, if others are shown, as soon as they are painted.
     pub fn show(&mut self, renderer: &mut Renderer, scores: &Scores) -> Result<()> {
-        if *scores == self.shown {
-            return Ok(());
+        if *scores != self.shown {
+            ask(&mut self.letters, scores, &self.words)?;
+            self.shown = scores.clone();
         }
-        let image = paint(&mut self.painter, scores, &self.words)?;
-        renderer.update_texture(self.texture, &image)?;
-        self.shown = scores.clone();
+        while let Some(((), picture)) = self.letters.done()? {
+            renderer.update_picture(self.texture, &picture)?;
+        }
         Ok(())
     }
 }
 
-fn paint(painter: &mut TextPainter, scores: &Scores, words: &Words) -> Result<RgbaImage> {
+fn ask(letters: &mut Letters<()>, scores: &Scores, words: &Words) -> Result<()> {
+    let (scores, words) = (scores.clone(), words.clone());
+    letters.ask((), move |painter| paint(painter, &scores, &words))
+}
+
+fn paint(
+    painter: &mut TextPainter,
+    scores: &Scores,
+    words: &Words,
+) -> Result<RgbaImage, RenderError> {
     let [width, height] = SIZE;
-    let image = painter.paint(width, height, GROUND, |ui| {
+    painter.paint(width, height, GROUND, |ui| {
         let painter = ui.ctx().debug_painter();
         for (row, top) in scores.rows.iter().zip([0.0, ROW]) {
             let area = Rect::from_min_size(
@@ -157,8 +175,7 @@ fn paint(painter: &mut TextPainter, scores: &Scores, words: &Words) -> Result<Rg
             let at = Pos2::new(width as f32 - 18.0, below);
             write(&painter, at, Align2::RIGHT_CENTER, &text, WORD_PX, INK);
         }
-    })?;
-    Ok(image)
+    })
 }
 
 /// How the last ball was let go, in two lines.

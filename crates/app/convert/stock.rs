@@ -17,6 +17,7 @@ use super::hand::Hands;
 use super::light::{lamps, light};
 use super::screen::Screen;
 use crate::again::Moment;
+use crate::lettering::Scribe;
 use crate::scenery::{self, Surface, mesh};
 use crate::words::Words;
 use looks::Looks;
@@ -185,6 +186,13 @@ impl Stock {
     /// The screen, while it shows something.
     pub(super) fn screen_instance(&self) -> Option<Instance> {
         self.screen.as_ref().and_then(Screen::instance)
+    }
+
+    /// Has the board painted by somebody else, for a frame that must not wait.
+    pub fn paint_apart(&mut self, scribe: &Scribe) {
+        if let Some(board) = &mut self.board {
+            board.paint_apart(scribe);
+        }
     }
 
     /// A box from -1 to 1 each way.

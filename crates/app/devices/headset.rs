@@ -2,6 +2,7 @@
 
 use crate::scenery::hand::Fingers;
 use game::{Input, Tracked, TriggerChange, Velocity};
+use glam::{DMat3, DQuat, DVec3};
 use physics::Pose;
 use renderer::headset::{Change, HandReading, Readings, Side, TrackedPose};
 
@@ -81,7 +82,7 @@ impl Participant {
         is_holding: bool,
     ) -> Input {
         let recentred = self.recentre_ns.take_if(|at| *at <= display_ns).is_some();
-        let hands = &readings.hands.map(in_use);
+        let hands = &in_use(readings);
         let other = self.throwing.other();
         let is_free = !is_holding && closure(&hands[self.throwing as usize]) < TAKES_OVER;
         let takes_over = is_free && closure(&hands[other as usize]) >= TAKES_OVER;
@@ -152,7 +153,7 @@ impl Participant {
     /// Head and hands in the room: the panel hangs at the hand that does not play, where it is tracked, and the other points at it.
     pub fn arms(&self, readings: &Readings, world_from_tracking: Pose) -> Option<Arms> {
         let placed = |pose: TrackedPose| world_from_tracking * tracked(pose).pose;
-        let hands = readings.hands.map(in_use);
+        let hands = in_use(readings);
         let hand = |side: Side| hands[side as usize].grip.map(placed);
         let (playing, other) = (hand(self.throwing), hand(self.throwing.other()));
         let trigger = closure(&hands[self.throwing as usize]);
@@ -178,17 +179,45 @@ impl Participant {
     }
 }
 
-/// A hand as it plays: a bare one is where its palm is, holds by a fist or a pinch, and has no buttons. When it closed is known to a
-/// frame only, as of a device without a trigger.
-fn in_use(hand: HandReading) -> HandReading {
-    let Some(bare) = hand.bare else { return hand };
-    HandReading {
-        grip: Some(bare.palm),
-        bare: hand.bare,
-        trigger: bare.grasp,
-        squeeze: bare.pinch,
-        ..HandReading::default()
-    }
+/// Hands as they play, left first: each where its palm is, fingers along -z and out of the palm along -y. A bare one holds by a fist or
+/// a pinch, and has no buttons. When it closed is known to a frame only, as of a device without a trigger.
+fn in_use(readings: &Readings) -> [HandReading; 2] {
+    Side::BOTH.map(|side| {
+        let hand = readings.hands[side as usize];
+        let palm = |grip: TrackedPose| TrackedPose {
+            rotation: grip.rotation * grip_from_palm(side),
+            ..grip
+        };
+        match hand.bare {
+            Some(bare) => HandReading {
+                grip: Some(bare.palm),
+                bare: hand.bare,
+                trigger: bare.grasp,
+                squeeze: bare.pinch,
+                ..HandReading::default()
+            },
+            None => HandReading {
+                grip: hand.grip.map(palm),
+                changes: hand.changes.map(|change| {
+                    change.map(|change| Change {
+                        grip: change.grip.map(palm),
+                        ..change
+                    })
+                }),
+                ..hand
+            },
+        }
+    })
+}
+
+/// The palm in the axes of a grip (OpenXR, standard pose identifiers): its z runs through the fist from the thumb's side to the little finger's,
+/// its x out of the left palm and into the right one.
+fn grip_from_palm(side: Side) -> DQuat {
+    let axes = match side {
+        Side::Left => DMat3::from_cols(DVec3::NEG_Z, DVec3::NEG_X, DVec3::Y),
+        Side::Right => DMat3::from_cols(DVec3::Z, DVec3::X, DVec3::Y),
+    };
+    DQuat::from_mat3(&axes)
 }
 
 /// How far a hand is closed, whichever of its two ways the participant took.

@@ -34,6 +34,18 @@ pub struct Timing {
     simulated: Duration,
 }
 
+impl Timing {
+    /// Pictures that the display showed a second time before this one.
+    pub fn missed(&self) -> u64 {
+        self.missed
+    }
+
+    /// Time between two pictures [s], as the runtime has it.
+    pub fn period_s(&self) -> f64 {
+        self.period_s
+    }
+}
+
 impl FrameTimes {
     /// Takes down a frame that was simulated in `simulated` after it woke.
     pub fn of(&mut self, frame: &Frame, simulated: Duration) -> Timing {

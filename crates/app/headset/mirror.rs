@@ -1,8 +1,8 @@
 //! The experimenter's window beside a headset: what the left eye sees, drawn anew at the window's own rate, and in a study the
 //! experimenter's board beside it.
 //!
-//! It has a device of its own and takes the game's lock only to copy what is seen, so that no screen slows the headset. Without a
-//! display there is none, and the session is the same.
+//! It has a device of its own and takes the game's lock only to copy what is seen, so that no screen slows the headset, and one that
+//! hangs holds up nothing but this window. Without a display there is none, and the session is the same.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
@@ -20,7 +20,8 @@ use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::keyboard::{KeyCode, PhysicalKey};
 use winit::window::{Window, WindowId};
 
-use super::{Shared, Watch};
+use super::Shared;
+use super::watch::Watched;
 use crate::convert::{self, Stock};
 use crate::labels;
 use crate::signs::SignStock;
@@ -35,13 +36,13 @@ const PERIOD: Duration = Duration::from_millis(33);
 ///
 /// # Errors
 /// What ended the thread.
-pub fn stay(watch: Watch, shared: Arc<Shared>, root: &Path, config: &Config) -> Result<()> {
+pub fn stay(watched: Watched, shared: Arc<Shared>, root: &Path, config: &Config) -> Result<()> {
     let display = crate::choose::display();
     let Some(events) = display.ok().and_then(|()| EventLoop::new().ok()) else {
-        return watch.wait();
+        return watched.wait();
     };
     let mut mirror = Mirror {
-        watch,
+        watched,
         shared,
         root: root.to_owned(),
         config: config.clone(),
@@ -60,7 +61,7 @@ pub fn stay(watch: Watch, shared: Arc<Shared>, root: &Path, config: &Config) -> 
                 _ => "the window system ended it".to_owned(),
             };
             println!("No mirror window any more: {why}. The participant is not affected.");
-            mirror.watch.wait()
+            mirror.watched.wait()
         }
     }
 }
@@ -77,7 +78,7 @@ struct Stage {
 }
 
 struct Mirror {
-    watch: Watch,
+    watched: Watched,
     shared: Arc<Shared>,
     root: PathBuf,
     config: Config,
@@ -232,7 +233,7 @@ impl ApplicationHandler for Mirror {
 
     fn about_to_wait(&mut self, events: &ActiveEventLoop) {
         self.outcome = match self.attend() {
-            Ok(()) => self.watch.look(Duration::ZERO),
+            Ok(()) => self.watched.outcome(),
             Err(error) => Some(Err(error)),
         };
         if self.outcome.is_some() {

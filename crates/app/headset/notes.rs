@@ -24,6 +24,7 @@ pub fn line(note: &Note) -> serde_json::Value {
         Note::Recentred(at) => json!({ "recentred": { "xr_time_ns": at } }),
         Note::Worn(is_worn) => json!({ "worn": is_worn }),
         Note::RefreshRate(rate) => json!({ "refresh_rate_hz": rate }),
+        Note::RateRefused(why) => json!({ "refresh_rate_refused": why }),
     }
 }
 
@@ -46,6 +47,9 @@ pub fn text(note: &Note) -> Option<String> {
         Note::Focus(Focus::Visible) => {
             Some("The participant is in a menu of the system: the game waits.".to_owned())
         }
+        Note::RateRefused(why) => Some(format!(
+            "The headset's refresh rate could not be chosen ({why}): it stays as it is."
+        )),
         Note::Worn(false) => Some("The headset was taken off.".to_owned()),
         _ => None,
     }

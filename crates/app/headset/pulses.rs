@@ -1,6 +1,8 @@
 //! What the hand feels: a pulse for the strongest of what happened to it in a frame.
 
 use game::{Event, EventKind, Model};
+use renderer::headset::Side;
+use serde_json::{Value, json};
 
 /// One pulse of the controller.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -9,6 +11,17 @@ pub struct Pulse {
     pub amplitude: f32,
     /// How long [s].
     pub seconds: f64,
+}
+
+impl Pulse {
+    /// Its line in the journal, once a hand has had it: what is felt is a cue as what is seen and heard is.
+    pub fn line(self, side: Side) -> Value {
+        json!({ "pulse": {
+            "hand": format!("{side:?}").to_lowercase(),
+            "amplitude": self.amplitude,
+            "seconds": self.seconds,
+        }})
+    }
 }
 
 /// The impulse that is felt as strongly as a controller can [N s]: a 15 lb ball that is knocked against a wall at 1.5 m/s.

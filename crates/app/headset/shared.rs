@@ -1,4 +1,4 @@
-//! What the runtime's thread and the main thread share.
+//! What the threads of a session in a headset share.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -11,32 +11,71 @@ use renderer::View;
 use crate::again::Moment;
 use crate::scenery::hand::Fingers;
 use crate::session::Session;
+use crate::voice::Voice;
 
 /// What a thread that panicked left is as whole as before: only single values are put in.
 fn locked<T>(value: &Mutex<T>) -> MutexGuard<'_, T> {
     value.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What the two threads share.
+/// What the threads share.
 pub struct Shared {
     /// `None` once the session is finished.
     pub session: Mutex<Option<Session>>,
     /// Milliseconds since `began` at which the runtime's thread last came round.
-    pub beat_ms: AtomicU64,
-    pub began: Instant,
+    beat_ms: AtomicU64,
+    /// Whether it is making a connection.
+    is_connecting: AtomicBool,
+    began: Instant,
     /// What the left eye saw last, world frame.
-    pub left_eye: Mutex<Option<View>>,
+    left_eye: Mutex<Option<View>>,
     /// What the screen over the lane shows again.
-    pub again: Mutex<Option<Moment>>,
+    again: Mutex<Option<Moment>>,
     /// The fingers of a bare hand that plays, and whether it is the left one.
-    pub fingers: Mutex<Option<(Fingers, bool)>>,
+    fingers: Mutex<Option<(Fingers, bool)>>,
     /// The experimenter's keys for Red and Blue: pressed since the last frame.
-    pub keys: [AtomicBool; 2],
+    keys: [AtomicBool; 2],
+    /// Says what the experimenter should know.
+    pub voice: Voice,
     pub stop: Arc<AtomicBool>,
 }
 
 impl Shared {
+    /// Of a session that begins now.
+    ///
+    /// # Errors
+    /// When the system has no thread left.
+    pub fn new(session: Session, stop: Arc<AtomicBool>) -> Result<Self> {
+        Ok(Self {
+            session: Mutex::new(Some(session)),
+            beat_ms: AtomicU64::new(0),
+            is_connecting: AtomicBool::new(false),
+            began: Instant::now(),
+            left_eye: Mutex::new(None),
+            again: Mutex::new(None),
+            fingers: Mutex::new(None),
+            keys: Default::default(),
+            voice: Voice::new()?,
+            stop,
+        })
+    }
+
     pub fn beat(&self) {
+        self.is_connecting.store(false, Ordering::Relaxed);
+        self.tick();
+    }
+
+    /// A connection is made anew, which takes longer than a frame.
+    pub fn begin_connecting(&self) {
+        self.is_connecting.store(true, Ordering::Relaxed);
+        self.tick();
+    }
+
+    pub fn is_connecting(&self) -> bool {
+        self.is_connecting.load(Ordering::Relaxed)
+    }
+
+    fn tick(&self) {
         let now = self.began.elapsed().as_millis() as u64;
         self.beat_ms.store(now, Ordering::Relaxed);
     }

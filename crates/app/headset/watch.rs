@@ -1,18 +1,23 @@
-//! The main thread's eye on the headset's: does the runtime answer, has the thread ended?
+//! An eye on the headset's thread, and on the main one with its screen: does the runtime answer, has the thread ended, does anybody
+//! hear of it?
 
-use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use anyhow::{Result, anyhow};
+use anyhow::{Context, Result, anyhow};
 use serde_json::json;
 
-use super::Shared;
+use super::{End, Shared};
 use crate::study::attendant::Attendant;
 
 /// A frame that takes longer than this is a runtime that does not answer.
 const PATIENCE: Duration = Duration::from_secs(2);
+/// The same of a new connection.
+const CONNECTING: Duration = Duration::from_secs(60);
+/// A main thread that does not hear of the end for so long hangs in its screen.
+const SCREEN: Duration = Duration::from_secs(2);
 /// How often somebody who only waits looks.
 const INTERVAL: Duration = Duration::from_millis(100);
 
@@ -42,21 +47,50 @@ impl Watch {
         }
     }
 
-    /// Waits for the thread's end.
+    /// Watches from a thread of its own. Where nobody takes the outcome, it concludes the session itself, and ends the program.
     ///
     /// # Errors
-    /// What ended it.
-    pub fn wait(mut self) -> Result<()> {
-        loop {
-            if let Some(outcome) = self.look(INTERVAL) {
-                return outcome;
-            }
-        }
+    /// When the system has no thread left.
+    pub fn begin(mut self, end: End) -> Result<Watched> {
+        let slot = Arc::new((Mutex::new(None), Condvar::new()));
+        let watched = Watched {
+            slot: Arc::clone(&slot),
+        };
+        let watch = move || {
+            let outcome = loop {
+                if let Some(outcome) = self.look(INTERVAL) {
+                    break outcome;
+                }
+            };
+            let (slot, changed) = &*slot;
+            let mut slot = locked(slot);
+            *slot = Some(outcome);
+            changed.notify_all();
+            let waited = changed.wait_timeout_while(slot, SCREEN, |slot| slot.is_some());
+            let (mut slot, _) = waited.unwrap_or_else(PoisonError::into_inner);
+            let Some(outcome) = slot.take() else { return };
+            drop(slot);
+            end.shared.voice.say(
+                "The screen of the mirror window does not answer: ended without it.".to_owned(),
+            );
+            std::process::exit(match end.conclude(outcome) {
+                Ok(()) => 0,
+                Err(error) => {
+                    eprintln!("error: {error:#}");
+                    1
+                }
+            });
+        };
+        std::thread::Builder::new()
+            .name("watch".to_owned())
+            .spawn(watch)
+            .context("cannot start the watchdog's thread")?;
+        Ok(watched)
     }
 
     /// Looks for at most `wait`: how the thread ended, or nothing while it runs. A thread that hangs in the runtime after it
     /// was asked to stop counts as ended: it is left behind, the session is not.
-    pub fn look(&mut self, wait: Duration) -> Option<Result<()>> {
+    fn look(&mut self, wait: Duration) -> Option<Result<()>> {
         match self.ended.recv_timeout(wait) {
             Ok(outcome) => return Some(outcome),
             Err(RecvTimeoutError::Disconnected) => {
@@ -69,7 +103,12 @@ impl Watch {
         if let Err(error) = self.attend() {
             return Some(Err(error));
         }
-        let is_silent = self.shared.silence() > PATIENCE;
+        let silence = self.shared.silence();
+        let is_silent = silence
+            > match self.shared.is_connecting() {
+                true => CONNECTING,
+                false => PATIENCE,
+            };
         if is_silent != self.is_silent {
             self.is_silent = is_silent;
             if let Err(error) = self.tell() {
@@ -78,7 +117,7 @@ impl Watch {
         }
         if self.shared.must_stop() {
             let since = *self.asked_to_stop.get_or_insert_with(Instant::now);
-            if since.elapsed() > PATIENCE && is_silent {
+            if since.elapsed() > PATIENCE && silence > PATIENCE {
                 return Some(Ok(()));
             }
         }
@@ -101,16 +140,45 @@ impl Watch {
     }
 
     fn tell(&self) -> Result<()> {
-        println!(
-            "{}",
-            if self.is_silent {
-                "The OpenXR runtime does not answer: the game waits. Ctrl-C ends and saves."
-            } else {
-                "The OpenXR runtime answers again."
-            }
-        );
+        let text = match self.is_silent {
+            true => "The OpenXR runtime does not answer: the game waits. Ctrl-C ends and saves.",
+            false => "The OpenXR runtime answers again.",
+        };
+        self.shared.voice.say(text.to_owned());
         self.shared
             .note(json!({ "runtime_answers": !self.is_silent }))?;
         Ok(())
+    }
+}
+
+/// A thread that is watched.
+pub struct Watched {
+    slot: Arc<(Mutex<Option<Result<()>>>, Condvar)>,
+}
+
+/// A thread that panicked left a whole outcome or none.
+fn locked<T>(slot: &Mutex<T>) -> MutexGuard<'_, T> {
+    slot.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Watched {
+    /// How the thread ended, once; nothing while it runs.
+    pub fn outcome(&self) -> Option<Result<()>> {
+        let (slot, changed) = &*self.slot;
+        let outcome = locked(slot).take();
+        changed.notify_all();
+        outcome
+    }
+
+    /// Waits for the thread's end.
+    ///
+    /// # Errors
+    /// What ended it.
+    pub fn wait(self) -> Result<()> {
+        let (slot, changed) = &*self.slot;
+        let waited = changed.wait_while(locked(slot), |slot| slot.is_none());
+        let outcome = waited.unwrap_or_else(PoisonError::into_inner).take();
+        changed.notify_all();
+        outcome.unwrap_or(Ok(()))
     }
 }

@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result};
 use experiment::questionnaire::{Answer, Item, Kind};
-use renderer::{RgbaImage, TextPainter, egui};
+use renderer::{RenderError, RgbaImage, TextPainter, egui};
 
 use super::layout::{Area, Choice, Content, Layout, SIZE_PX};
 use crate::words::{PanelWords, StopWords, fill};
@@ -33,8 +33,8 @@ pub fn paint(
     content: &Content,
     layout: &Layout,
     fixed: &PanelWords,
-) -> Result<RgbaImage> {
-    let image = painter.paint(SIZE_PX.x, SIZE_PX.y, GROUND, |ui| {
+) -> Result<RgbaImage, RenderError> {
+    painter.paint(SIZE_PX.x, SIZE_PX.y, GROUND, |ui| {
         let brush = ui.ctx().debug_painter();
         match content {
             Content::Words(words) => text(&brush, words, QUESTION_PX, egui::pos2(MARGIN, 200.0)),
@@ -64,8 +64,7 @@ pub fn paint(
                 }
             }
         }
-    });
-    image.context("cannot paint the panel")
+    })
 }
 
 /// The picture of the stop sign.

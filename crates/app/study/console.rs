@@ -9,6 +9,7 @@ use anyhow::{Context, Result};
 
 use super::experimenter::{self, HELP};
 use crate::session::Session;
+use crate::voice::Voice;
 
 /// A terminal that attends to a session.
 #[derive(Debug)]
@@ -16,6 +17,8 @@ pub struct Console {
     lines: Receiver<String>,
     /// What was said last, so that it is said once.
     said: String,
+    /// A session in a headset attends to its terminal under the lock that its frames take.
+    voice: Voice,
 }
 
 impl Console {
@@ -41,6 +44,7 @@ impl Console {
         Ok(Self {
             lines,
             said: String::new(),
+            voice: Voice::new()?,
         })
     }
 
@@ -52,7 +56,7 @@ impl Console {
         self.say(session);
         while let Ok(line) = self.lines.try_recv() {
             if let Some(reply) = experimenter::take(&line, session)? {
-                println!("{reply}");
+                self.voice.say(reply);
             }
             self.said.clear();
             self.say(session);
@@ -63,8 +67,14 @@ impl Console {
     fn say(&mut self, session: &Session) {
         let due = experimenter::due(session).unwrap_or_default();
         if due != self.said {
-            println!("{due}");
+            self.voice.say(due.clone());
             self.said = due;
         }
+    }
+}
+
+impl Drop for Console {
+    fn drop(&mut self) {
+        self.voice.finish();
     }
 }

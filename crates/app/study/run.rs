@@ -107,7 +107,9 @@ fn is_script(choice: Choice) -> bool {
 }
 
 fn device(wanted: Option<DeviceChoice>) -> Result<Choice> {
-    let (choice, why) = choose::choose(wanted, false, &Machine::look())?;
+    // What was found is let go: the consent is asked for first, and nobody listens to a runtime meanwhile.
+    let (machine, _) = Machine::look(wanted, false);
+    let (choice, why) = choose::choose(wanted, false, &machine)?;
     println!("{why}");
     Ok(choice)
 }
@@ -166,7 +168,10 @@ fn sit(study: &Study, lock: &Lock, guest: Guest, choice: Choice, root: &Path) ->
             let session = bowl(setup, attendant, &stop)?;
             session.finish(None, wanted, &mut |_| ())?;
         }
-        Choice::Headset => headset::run(setup, root, wanted, None, Some(attendant))?,
+        Choice::Headset => {
+            let headset = (choose::find()?, headset::asking_for(None));
+            headset::run(setup, root, wanted, headset, Some(attendant))?;
+        }
         Choice::DeskWindow | Choice::ScriptWindow => {
             window::run(setup, root, wanted, choice, Some(attendant))?;
         }

@@ -63,6 +63,6 @@ pub use scene::{
     Occluder, Pattern, Scene, TextureId, Vignette,
 };
 pub use text::{TextBlock, TextPainter};
-pub use texture::load_image;
+pub use texture::{Picture, load_image};
 pub use view::{FAR_M, Fov, NEAR_M, View};
 pub use window::{Anchor, WindowTarget};

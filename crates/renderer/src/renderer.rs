@@ -126,7 +126,7 @@ impl Renderer {
             settings,
             meshes: Vec::new(),
             textures: Vec::new(),
-            white: Texture::new(gpu, &texture_layout, &sampler, &white_pixel)?,
+            white: Texture::new(gpu, &texture_layout, &sampler, &white_pixel.into())?,
             texture_layout,
             sampler,
             eyes: buffer("eyes", EYE_STRIDE * (LIGHT_EYE as u64 + 1), uniform),

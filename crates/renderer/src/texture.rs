@@ -12,6 +12,36 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 /// Most samples along the longer axis of a pixel's footprint; the lane is seen at grazing angles.
 const ANISOTROPY: u16 = 8;
 
+/// An image with its smaller copies: whoever makes one elsewhere leaves nothing but the upload to the renderer.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// Each half as large as the one before, down to one pixel.
+    levels: Vec<RgbaImage>,
+}
+
+impl From<RgbaImage> for Picture {
+    fn from(image: RgbaImage) -> Self {
+        let (width, height) = image.dimensions();
+        // An image without pixels has no smaller copies, and is refused by whoever is to take it.
+        let copies = match width.min(height) {
+            0 => 0,
+            _ => width.max(height).ilog2(),
+        };
+        let mut levels = vec![image];
+        for level in 0..copies as usize {
+            levels.push(half(&levels[level]));
+        }
+        Self { levels }
+    }
+}
+
+impl Picture {
+    /// Width and height [pixels].
+    pub fn size(&self) -> [u32; 2] {
+        self.levels[0].dimensions().into()
+    }
+}
+
 /// A texture on the device with the bindings that a pass reads it through.
 #[derive(Debug)]
 pub(crate) struct Texture {
@@ -24,9 +54,9 @@ impl Texture {
         gpu: &Gpu,
         layout: &wgpu::BindGroupLayout,
         sampler: &wgpu::Sampler,
-        image: &RgbaImage,
+        picture: &Picture,
     ) -> Result<Self, RenderError> {
-        let (width, height) = image.dimensions();
+        let [width, height] = picture.size();
         let most = gpu.max_side();
         if width == 0 || height == 0 || width > most || height > most {
             return Err(RenderError::Texture(format!(
@@ -36,7 +66,7 @@ impl Texture {
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some("picture"),
             size: extent(width, height),
-            mip_level_count: width.max(height).ilog2() + 1,
+            mip_level_count: picture.levels.len() as u32,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
             format: FORMAT,
@@ -44,7 +74,7 @@ impl Texture {
             view_formats: &[],
         });
         let texture = Self::bound(gpu, layout, sampler, texture);
-        texture.write(gpu, image);
+        texture.write(gpu, picture);
         Ok(texture)
     }
 
@@ -79,31 +109,25 @@ impl Texture {
     }
 
     /// Replaces the picture by another of the same size; `false`, and nothing done, if the size differs.
-    pub fn replace(&self, gpu: &Gpu, image: &RgbaImage) -> bool {
-        let same = image.dimensions() == (self.texture.width(), self.texture.height());
+    pub fn replace(&self, gpu: &Gpu, picture: &Picture) -> bool {
+        let same = picture.size() == [self.texture.width(), self.texture.height()];
         if same {
-            self.write(gpu, image);
+            self.write(gpu, picture);
         }
         same
     }
 
-    fn write(&self, gpu: &Gpu, image: &RgbaImage) {
-        let mut smaller;
-        let mut level_image = image;
-        for level in 0..self.texture.mip_level_count() {
-            if level > 0 {
-                smaller = half(level_image);
-                level_image = &smaller;
-            }
-            let (width, height) = level_image.dimensions();
+    fn write(&self, gpu: &Gpu, picture: &Picture) {
+        for (level, image) in picture.levels.iter().enumerate() {
+            let (width, height) = image.dimensions();
             gpu.queue.write_texture(
                 wgpu::TexelCopyTextureInfo {
                     texture: &self.texture,
-                    mip_level: level,
+                    mip_level: level as u32,
                     origin: wgpu::Origin3d::ZERO,
                     aspect: wgpu::TextureAspect::All,
                 },
-                level_image.as_raw(),
+                image.as_raw(),
                 wgpu::TexelCopyBufferLayout {
                     offset: 0,
                     bytes_per_row: Some(4 * width),
@@ -249,8 +273,8 @@ mod tests {
         let gpu = Gpu::new(crate::BackendChoice::Noop).expect("the test backend needs no driver");
         let (layout, sampler) = (bind_group_layout(&gpu.device), sampler(&gpu, true));
         for ((width, height), levels) in [((256, 100), 9), ((1, 1), 1), ((3, 5), 3)] {
-            let image = RgbaImage::new(width, height);
-            let texture = Texture::new(&gpu, &layout, &sampler, &image).expect("good");
+            let picture = RgbaImage::new(width, height).into();
+            let texture = Texture::new(&gpu, &layout, &sampler, &picture).expect("good");
             assert_eq!(texture.texture.mip_level_count(), levels);
         }
     }

@@ -247,3 +247,34 @@ fn the_wrist_is_that_of_the_hand_that_does_not_play() {
     left.head = None;
     assert!(participant.arms(&left, rig).is_none());
 }
+
+/// A fist round an upright stick, thumb up, as one holds a glass before oneself: the fingers would point ahead, the palms at each other.
+#[test]
+fn a_controller_is_held_by_a_hand_whose_fingers_go_round_it() {
+    // -z of both grips is up, and x, which is into the right palm and out of the left one, is to the right.
+    let grip = TrackedPose {
+        position: DVec3::ZERO,
+        rotation: DQuat::from_rotation_x(std::f64::consts::FRAC_PI_2),
+        velocity: None,
+    };
+    assert!((grip.rotation * DVec3::NEG_Z).distance(DVec3::Y) < 1e-12);
+    for (side, out_of_palm, thumb) in [
+        (Side::Left, DVec3::X, DVec3::X),
+        (Side::Right, DVec3::NEG_X, DVec3::NEG_X),
+    ] {
+        let mut readings = Readings::default();
+        readings.hands[side as usize].grip = Some(grip);
+        let palm = in_use(&readings)[side as usize].grip.expect("tracked");
+        let of = |axis: DVec3| palm.rotation * axis;
+        assert!(
+            of(DVec3::NEG_Z).distance(DVec3::NEG_Z) < 1e-12,
+            "{side:?}: fingers"
+        );
+        assert!(
+            of(DVec3::NEG_Y).distance(out_of_palm) < 1e-12,
+            "{side:?}: palm"
+        );
+        // A right hand's thumb is at its left, a left one's at its right.
+        assert!(of(thumb).distance(DVec3::Y) < 1e-12, "{side:?}: thumb");
+    }
+}

@@ -18,6 +18,9 @@ pub enum HeadsetError {
         "the OpenXR runtime is installed but does not answer: start its service (SteamVR, or monado-service)"
     )]
     NoService,
+    /// The runtime was asked and says nothing.
+    #[error("the OpenXR runtime does not answer: end it and start it again")]
+    Silent,
     /// The runtime runs and sees no headset.
     #[error("the OpenXR runtime {0} runs but sees no headset: connect one and switch it on")]
     NotConnected(String),
@@ -30,7 +33,7 @@ pub enum HeadsetError {
         what: &'static str,
     },
     /// The display has no such refresh rate.
-    #[error("the headset has no refresh rate of {wanted} Hz: choose one of {offered}")]
+    #[error("the headset has no refresh rate of {wanted} Hz: it offers {offered}")]
     NoSuchRate {
         /// What was asked for [Hz].
         wanted: String,
@@ -55,10 +58,13 @@ pub enum HeadsetError {
 
 impl HeadsetError {
     pub(super) fn no_such_rate(wanted: f32, offered: &[f32]) -> Self {
-        let offered: Vec<String> = offered.iter().map(f32::to_string).collect();
+        let rates: Vec<String> = offered.iter().map(f32::to_string).collect();
         Self::NoSuchRate {
             wanted: wanted.to_string(),
-            offered: offered.join(", "),
+            offered: match rates.as_slice() {
+                [] => "none to choose from, leave --refresh-rate out".to_owned(),
+                rates => rates.join(", "),
+            },
         }
     }
 

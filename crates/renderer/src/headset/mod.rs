@@ -29,7 +29,7 @@ pub use self::error::HeadsetError;
 pub use self::frame::Frame;
 pub use self::joints::BareHand;
 pub use self::note::{Focus, Note};
-pub use self::runtime::probe;
+pub use self::runtime::Found;
 pub use self::session::{HeadsetSession, HeadsetSettings, Seen, Shown};
 pub use self::space::TrackedPose;
 

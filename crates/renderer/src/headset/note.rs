@@ -54,6 +54,8 @@ pub enum Note {
     Worn(bool),
     /// The display's rate [Hz].
     RefreshRate(f32),
+    /// The display's rate could not be chosen: why.
+    RateRefused(String),
 }
 
 impl From<xr::SessionState> for Focus {

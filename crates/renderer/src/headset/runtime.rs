@@ -17,12 +17,22 @@ pub(super) struct Runtime {
     pub headset: Headset,
 }
 
-/// Asks the OpenXR runtime for a headset with two eyes that Vulkan can draw for.
-///
-/// # Errors
-/// One sentence: no loader, no runtime, a runtime without its service, no headset connected.
-pub fn probe() -> Result<Headset, HeadsetError> {
-    Runtime::find().map(|runtime| runtime.headset)
+/// A headset that was found, with the connection to its runtime.
+pub struct Found(pub(super) Runtime);
+
+impl Found {
+    /// Asks the OpenXR runtime for a headset with two eyes that Vulkan can draw for. A runtime that hangs does so here.
+    ///
+    /// # Errors
+    /// One sentence: no loader, no runtime, a runtime without its service, no headset connected.
+    pub fn look() -> Result<Self, HeadsetError> {
+        Runtime::find().map(Self)
+    }
+
+    /// What was found.
+    pub fn headset(&self) -> &Headset {
+        &self.0.headset
+    }
 }
 
 impl Runtime {
@@ -152,10 +162,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn probe_answers_without_a_panic() {
+    fn look_answers_without_a_panic() {
         // What it answers depends on the machine; that it answers in a sentence does not.
-        match probe() {
-            Ok(headset) => assert!(!headset.system.is_empty()),
+        match Found::look() {
+            Ok(found) => assert!(!found.headset().system.is_empty()),
             Err(error) => assert!(!error.to_string().is_empty()),
         }
     }

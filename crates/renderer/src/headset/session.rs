@@ -8,13 +8,13 @@ use std::time::Instant;
 use openxr as xr;
 
 use super::actions::{Actions, HandReading, Readings, Side};
-use super::begin::{choose_rate, create, floor};
+use super::begin::{choose_rate, create, floor, lower_rate};
 use super::eyes::Eye;
 use super::frame::Frame;
 use super::images::Images;
 use super::joints::Joints;
 use super::note::{Focus, Note};
-use super::runtime::{Runtime, STEREO};
+use super::runtime::{Found, Runtime, STEREO};
 use super::vulkan::{self, Vulkan};
 use super::{Headset, HeadsetError, bounds, space};
 use crate::Gpu;
@@ -26,6 +26,8 @@ pub use picture::{Seen, Shown};
 pub struct HeadsetSettings {
     /// Refresh rate that is asked for [Hz]; `None` for the highest that the runtime offers.
     pub refresh_rate_hz: Option<f32>,
+    /// Where none is asked for, the highest is taken that is not above this one [Hz].
+    pub highest_rate_hz: Option<f32>,
 }
 
 /// A session with a headset. Fields are dropped in this order: the runtime wants its images back before the session goes,
@@ -55,12 +57,12 @@ pub struct HeadsetSession {
 }
 
 impl HeadsetSession {
-    /// Connects to the runtime and its headset.
+    /// Begins a session with a headset.
     ///
     /// # Errors
     /// One sentence: what is missing, or what the runtime refused.
-    pub fn open(settings: HeadsetSettings) -> Result<Self, HeadsetError> {
-        let runtime = Runtime::find()?;
+    pub fn open(found: Found, settings: HeadsetSettings) -> Result<Self, HeadsetError> {
+        let Found(runtime) = found;
         // Bound before the session, so that it outlives the session where something below fails.
         let Vulkan { gpu, binding } = vulkan::open(&runtime)?;
         let (session, waiter, stream) = create(&runtime, &binding)?;
@@ -90,10 +92,10 @@ impl HeadsetSession {
                 .collect(),
         });
         if runtime.enabled.fb_display_refresh_rate {
-            notes.push(Note::RefreshRate(choose_rate(
-                &session,
-                settings.refresh_rate_hz,
-            )?));
+            notes.push(choose_rate(&session, settings)?);
+        } else if let Some(wanted) = settings.refresh_rate_hz {
+            let why = format!("{wanted} Hz: this runtime lets nobody choose");
+            notes.push(Note::RateRefused(why));
         }
         Ok(Self {
             eyes,
@@ -139,6 +141,19 @@ impl HeadsetSession {
     /// How much attention the session has.
     pub fn focus(&self) -> Focus {
         self.focus
+    }
+
+    /// Asks for the next lower rate that the display offers. Returns the one it had and the one asked for [Hz]; `None` where there is
+    /// no lower one, or the runtime does not let it be chosen.
+    pub fn slow_down(&self) -> Option<(f32, f32)> {
+        if !self.runtime.enabled.fb_display_refresh_rate {
+            return None;
+        }
+        let from = self.session.get_display_refresh_rate().ok()?;
+        let offered = self.session.enumerate_display_refresh_rates().ok()?;
+        let to = lower_rate(&offered, from)?;
+        self.session.request_display_refresh_rate(to).ok()?;
+        Some((from, to))
     }
 
     /// Asks the runtime to end the session; [`Note::Exit`] follows.

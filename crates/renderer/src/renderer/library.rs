@@ -7,7 +7,7 @@ use image::RgbaImage;
 use super::Renderer;
 use crate::passes::GpuMesh;
 use crate::scene::{Instance, MeshId, Scene, TextureId};
-use crate::texture::{self, Texture};
+use crate::texture::{self, Picture, Texture};
 use crate::{MeshData, RenderError};
 
 impl Renderer {
@@ -59,7 +59,15 @@ impl Renderer {
     /// # Errors
     /// If a side is zero or larger than the device holds.
     pub fn add_texture(&mut self, image: &RgbaImage) -> Result<TextureId, RenderError> {
-        let texture = self.upload(image)?;
+        self.add_picture(&image.clone().into())
+    }
+
+    /// Takes a texture whose smaller copies are made already.
+    ///
+    /// # Errors
+    /// If a side is zero or larger than the device holds.
+    pub fn add_picture(&mut self, picture: &Picture) -> Result<TextureId, RenderError> {
+        let texture = self.upload(picture)?;
         Ok(self.take_texture(texture))
     }
 
@@ -81,16 +89,24 @@ impl Renderer {
     /// # Errors
     /// If the texture is not this renderer's, or the image cannot be taken.
     pub fn update_texture(&mut self, id: TextureId, image: &RgbaImage) -> Result<(), RenderError> {
+        self.update_picture(id, &image.clone().into())
+    }
+
+    /// The same with a picture whose smaller copies are made already.
+    ///
+    /// # Errors
+    /// If the texture is not this renderer's, or the picture cannot be taken.
+    pub fn update_picture(&mut self, id: TextureId, picture: &Picture) -> Result<(), RenderError> {
         let index = id.0 as usize;
         match self.textures.get(index) {
             None => return Err(RenderError::Texture("it is not this renderer's".to_owned())),
-            Some(texture) if texture.replace(&self.gpu, image) => {}
-            Some(_) => self.textures[index] = self.upload(image)?,
+            Some(texture) if texture.replace(&self.gpu, picture) => {}
+            Some(_) => self.textures[index] = self.upload(picture)?,
         }
         Ok(())
     }
 
-    fn upload(&self, image: &RgbaImage) -> Result<Texture, RenderError> {
-        Texture::new(&self.gpu, &self.texture_layout, &self.sampler, image)
+    fn upload(&self, picture: &Picture) -> Result<Texture, RenderError> {
+        Texture::new(&self.gpu, &self.texture_layout, &self.sampler, picture)
     }
 }

@@ -49,18 +49,24 @@ impl HeadsetSession {
         wanted: bool,
     ) -> Result<Shown, HeadsetError> {
         self.stream.begin()?;
+        for eye in &mut self.eyes {
+            eye.acquire()?;
+        }
+        // Where the eyes are is asked last: the images may have been waited for.
         let (flags, located) = self.session.locate_views(STEREO, frame.time, &self.base)?;
         let known = xr::ViewStateFlags::POSITION_VALID | xr::ViewStateFlags::ORIENTATION_VALID;
         let [left, right] = located.as_slice() else {
             return Err(HeadsetError::Other("a view for one eye only".to_owned()));
         };
         if !flags.contains(known) {
+            self.release()?;
             self.stream.end(frame.time, self.blend, &[])?;
             return Ok(Shown::default());
         }
         let located = [left, right];
         let views = located.map(|eye| view(eye, world_from_tracking));
         let seen = self.draw(renderer, scene, views, wanted)?;
+        self.release()?;
         with_layer(&self.eyes, located, &self.base, |layer| {
             self.stream.end(frame.time, self.blend, &[layer])
         })?;
@@ -79,7 +85,6 @@ impl HeadsetSession {
     ) -> Result<Vec<Seen>, HeadsetError> {
         let device = &self.gpu.device;
         for (eye, view) in self.eyes.iter_mut().zip(&views) {
-            eye.acquire()?;
             if let Some(mask) = &mut eye.mask {
                 mask.fit(device, view.fov);
             }
@@ -98,14 +103,15 @@ impl HeadsetSession {
             Vec::new()
         };
         self.gpu.queue.submit([encoder.finish()]);
-        let seen = readbacks
+        readbacks
             .into_iter()
             .map(|readback| readback.seen(device))
-            .collect::<Result<_, _>>()?;
-        for eye in &mut self.eyes {
-            eye.release()?;
-        }
-        Ok(seen)
+            .collect()
+    }
+
+    /// Gives the images back, drawn or not.
+    fn release(&mut self) -> Result<(), HeadsetError> {
+        self.eyes.iter_mut().try_for_each(Eye::release)
     }
 }
 
