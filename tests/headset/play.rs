@@ -161,6 +161,16 @@ fn a_whole_frame_is_played() {
         });
         room.walk_to(Hand::Right, 0.6, 2.3);
     }
+    // Written down once the runtime has taken them.
+    let pulses = room.device("pulse");
+    let felt = |amplitude: f64| {
+        pulses.iter().any(|pulse| {
+            let given = pulse["amplitude"].as_f64().expect("a number");
+            pulse["hand"] == "right" && (given - amplitude).abs() < 1e-6
+        })
+    };
+    assert!(felt(0.6), "no grab was felt: {pulses:?}");
+    assert!(felt(0.4), "no release was felt: {pulses:?}");
     room.wait_until("the game's frame times", |room| {
         !room.device("game_frames").is_empty()
     });
