@@ -51,6 +51,9 @@ pub struct Body {
     pub(crate) oil: Option<Arc<OilPattern>>,
     pub(crate) asleep: bool,
     pub(crate) frozen: bool,
+    /// Whether a body can have its coefficients, and whether one that is not fixed can have its mass and its drag.
+    has_material: bool,
+    pub(crate) can_move: bool,
     pub(crate) position: DVec3,
     pub(crate) rotation: DQuat,
     pub(crate) linear: DVec3,
@@ -107,18 +110,35 @@ impl Body {
         } else {
             0.0
         };
+        let (has_material, can_move) = (def.material.is_valid(), def.can_move());
+        let material = if has_material {
+            def.material
+        } else {
+            // What touches it is to go on: smooth and inelastic.
+            Material {
+                elasticity: 0.0,
+                friction_rate: 0.0,
+                ..def.material
+            }
+        };
         let mut body = Body {
             compound: def.compound,
             motion: def.motion,
             mass: def.mass,
-            material: def.material,
+            material,
             collides: true,
             meets: true,
-            spin: Spin::new(&def.mass, settings.effects),
+            spin: if can_move {
+                Spin::new(&def.mass, settings.effects)
+            } else {
+                Spin::Never
+            },
             drag,
             oil: None,
             asleep: false,
             frozen: false,
+            has_material,
+            can_move,
             position: def.pose.position,
             rotation: def.pose.rotation.normalize(),
             linear: DVec3::ZERO,
@@ -146,6 +166,7 @@ impl Body {
             squeezed: false,
         };
         body.set_velocity(def.linear_velocity, def.angular_velocity);
+        body.judge();
         body
     }
 
@@ -178,7 +199,7 @@ impl Body {
 
     /// Kinetic energy [J]; zero unless the body is dynamic.
     pub fn kinetic_energy(&self) -> f64 {
-        if self.motion != Motion::Dynamic {
+        if self.motion != Motion::Dynamic || self.frozen {
             return 0.0;
         }
         let spin = self.momentum.dot(self.angular_velocity());
@@ -220,7 +241,9 @@ impl Body {
         self.asleep
     }
 
-    /// Whether its state became non-finite; it then stays where it last was until it is given a pose.
+    /// Whether its state is none (not finite, or made of what no body can be made of, [`crate::World::add`]).
+    ///
+    /// It then stays where it last was, without velocity, until it is given a pose that is one.
     pub fn is_frozen(&self) -> bool {
         self.frozen
     }
@@ -353,6 +376,33 @@ impl Body {
 }
 
 impl Body {
+    /// Freezes it if its state is none; what is frozen stays so.
+    ///
+    /// Whoever changes a body from outside ends with this: a number that is none would go over to all that touches it.
+    pub(crate) fn judge(&mut self) {
+        if self.frozen || !self.is_sound() {
+            self.freeze();
+        }
+    }
+
+    /// Stops the body where it last was, until it is given a pose.
+    pub(crate) fn freeze(&mut self) {
+        self.frozen = true;
+        if !self.pose().is_finite() {
+            (self.position, self.rotation) = (self.last_finite.position, self.last_finite.rotation);
+        }
+        self.halt();
+    }
+
+    /// Whether a step can work with it: finite, squares included, and made of what a body can be made of.
+    pub(crate) fn is_sound(&self) -> bool {
+        let vectors = [self.position, self.linear, self.momentum, self.turning];
+        self.rotation.is_finite()
+            && vectors.iter().all(|v| v.length_squared().is_finite())
+            && self.has_material
+            && (self.motion == Motion::Fixed || self.can_move)
+    }
+
     pub(crate) fn is_finite(&self) -> bool {
         self.position.is_finite()
             && self.rotation.is_finite()

@@ -134,16 +134,19 @@ impl World {
 
     /// The stages that a step runs, in their order, with the effects that act in each.
     ///
-    /// An effect is missing if the settings do not list it, and if nothing in the world calls for it.
+    /// An effect is missing if the settings do not list it, and if nothing in the world has called for it so far. What was
+    /// called for once stays in the plan when the body is removed that did, or the pair set back to zero: a plan only
+    /// grows, so that it is the same whoever came and went.
     pub fn plan(&self) -> impl Iterator<Item = PlannedStage> + '_ {
         self.plan.stages()
     }
 
-    /// Adds a body. A state or mass that is not finite freezes the body where it is instead of failing later.
+    /// Adds a body.
+    ///
+    /// What no body can have freezes it where it is instead of failing later: a state that is not finite; coefficients outside 0
+    /// to 1, which then count as zero; and, unless it is fixed, a mass or a moment that is not positive, a negative drag.
     pub fn add(&mut self, def: BodyDef) -> BodyId {
-        let valid = def.is_valid();
         let mut body = Body::new(def, &self.settings);
-        body.frozen = !valid || !body.is_finite();
         let vacant = if self.vacant > 0 {
             self.generations.iter().position(|(_, live)| !live)
         } else {
@@ -214,6 +217,8 @@ impl World {
     }
 
     /// Puts a body elsewhere at once, keeping its velocity; wakes it and what it touched.
+    ///
+    /// Thaws a frozen body. A pose that is none freezes it where it is.
     pub fn set_pose(&mut self, id: BodyId, pose: Pose) {
         let slot = self.slot(id);
         self.disturb(slot);
@@ -223,18 +228,24 @@ impl World {
         body.rotation = pose.rotation.normalize();
         let linear = body.linear;
         body.set_velocity(linear, angular);
-        body.frozen = !body.is_finite();
+        body.frozen = false;
+        body.judge();
+        body.last_finite = body.pose();
         self.renew(slot);
     }
 
-    /// Sets velocities [m/s] and [rad/s], world frame; wakes the body.
+    /// Sets velocities [m/s] and [rad/s], world frame; wakes the body. Velocities that are none freeze it.
+    ///
+    /// A fixed body takes none, and a driven one keeps its own no longer than to the next step: that sets it anew from the
+    /// target that [`World::drive_to`] gave, or to zero.
     pub fn set_velocity(&mut self, id: BodyId, linear: DVec3, angular: DVec3) {
         let slot = self.slot(id);
         self.disturb(slot);
         self.bodies[slot].set_velocity(linear, angular);
+        self.bodies[slot].judge();
     }
 
-    /// Changes who moves the body; its velocity stays.
+    /// Changes who moves the body; its velocity stays. One that cannot be moved so freezes, see [`World::add`].
     pub fn set_motion(&mut self, id: BodyId, motion: Motion) {
         let slot = self.slot(id);
         self.disturb(slot);
@@ -242,6 +253,7 @@ impl World {
         let (linear, angular) = (body.linear, body.angular_velocity());
         body.motion = motion;
         body.set_velocity(linear, angular);
+        body.judge();
         self.call_for_all_of(slot);
         self.decide_meeting(slot);
         let body = &mut self.bodies[slot];
@@ -261,11 +273,12 @@ impl World {
 
     /// Tells a driven body where to be at the end of the next step; its velocity follows from the difference.
     ///
-    /// A step without a new target leaves it standing. A pose that is not finite is ignored, and so is the call for
-    /// a body that is not driven.
+    /// A step without a new target leaves it standing. A pose that is not finite or has no orientation is ignored, and so
+    /// is the call for a body that is not driven. A target so far away that the way there has no speed freezes the body.
     pub fn drive_to(&mut self, id: BodyId, pose: Pose) {
         let slot = self.slot(id);
-        if pose.is_finite() && self.bodies[slot].motion == Motion::Driven {
+        let turns = pose.rotation.length_squared() > 0.0;
+        if pose.is_finite() && turns && self.bodies[slot].motion == Motion::Driven {
             self.targets[slot] = Some(pose);
             self.rouse(slot);
         }
@@ -310,7 +323,9 @@ impl World {
     ///
     /// Without `Effect::Gravity` there is no potential energy.
     pub fn energy(&self) -> f64 {
-        let dynamic = self.bodies.iter().filter(|b| b.motion == Motion::Dynamic);
+        // What has no mass that is one is frozen, and none of the energy.
+        let has_energy = |b: &&Body| b.motion == Motion::Dynamic && b.can_move;
+        let dynamic = self.bodies.iter().filter(has_energy);
         dynamic
             .map(|b| b.kinetic_energy() - b.mass.mass * self.plan.gravity.dot(b.position))
             .sum()
@@ -378,6 +393,7 @@ impl World {
                 None => (DVec3::ZERO, DVec3::ZERO),
             };
             body.set_velocity(linear, angular);
+            body.judge();
         }
     }
 }

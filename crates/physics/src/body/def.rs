@@ -36,6 +36,14 @@ pub struct Material {
     pub surface: Surface,
 }
 
+impl Material {
+    /// Whether both coefficients lie between 0 and 1.
+    pub fn is_valid(&self) -> bool {
+        let unit = 0.0..=1.0;
+        unit.contains(&self.elasticity) && unit.contains(&self.friction_rate)
+    }
+}
+
 /// Who moves a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Motion {
@@ -69,9 +77,9 @@ pub struct BodyDef {
 }
 
 impl BodyDef {
-    /// Whether a body can move so: something that never moves may have any mass.
-    pub(crate) fn is_valid(&self) -> bool {
+    /// Whether a body can move so; something that never moves may have any mass.
+    pub(crate) fn can_move(&self) -> bool {
         let drags = self.drag_area_m2 >= 0.0 && self.drag_area_m2.is_finite();
-        self.motion == Motion::Fixed || (self.mass.is_valid() && drags)
+        self.mass.is_valid() && drags
     }
 }

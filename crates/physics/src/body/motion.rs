@@ -95,6 +95,7 @@ impl Body {
         match self.motion {
             Motion::Fixed => Sweep::STILL,
             _ if symmetry == Symmetry::Full => Sweep::STILL,
+            Motion::Dynamic if self.spin == Spin::Never => Sweep::STILL,
             Motion::Driven => Sweep::new(0.0, self.turning.length(), radius),
             Motion::Dynamic if self.spin == Spin::Steady => self.sweep_of_steady_turning(),
             Motion::Dynamic if symmetry == Symmetry::Axis && i.x == i.z => {

@@ -88,19 +88,24 @@ impl World {
         watch.begin();
         for i in 0..self.plan.stages.len() {
             let stage = self.plan.stages[i];
-            match stage {
-                Stage::Drive => self.aim_driven(dt),
-                Stage::Slow | Stage::SlowAgain => self.slow_in_air(dt),
-                Stage::WakeHeld => self.wake_driven_neighbours(),
-                Stage::Gather => self.gather_lasting(dt),
-                Stage::Carry => self.rest(dt),
-                Stage::Strike => self.run_events(dt),
-                Stage::Arrive => self.arrive(dt),
-                Stage::Sleep => self.fall_asleep(dt),
-            }
+            self.run(stage, dt);
             watch.lap(stage);
         }
         self.dismiss();
+    }
+
+    /// One stage of a step of `dt` seconds.
+    fn run(&mut self, stage: Stage, dt: f64) {
+        match stage {
+            Stage::Drive => self.aim_driven(dt),
+            Stage::Slow | Stage::SlowAgain => self.slow_in_air(dt),
+            Stage::WakeHeld => self.wake_driven_neighbours(),
+            Stage::Gather => self.gather_lasting(dt),
+            Stage::Carry => self.rest(dt),
+            Stage::Strike => self.run_events(dt),
+            Stage::Arrive => self.arrive(dt),
+            Stage::Sleep => self.fall_asleep(dt),
+        }
     }
 
     /// Notes the lasting contacts of a step of `dt` seconds.
@@ -180,8 +185,7 @@ impl World {
         }
         body.position = body.last_finite.position;
         body.rotation = body.last_finite.rotation;
-        body.halt();
-        body.frozen = true;
+        body.freeze();
         self.renew(slot);
     }
 }
