@@ -202,6 +202,14 @@ pub struct Effort {
     pub due: u64,
     /// Answers of single lasting contacts.
     pub passes: u64,
+    /// Impulses without elasticity and friction since the bodies met slowly: a contact that lasts begins so.
+    pub slow: u64,
+    /// Impulses without elasticity and friction since their bodies had taken many in this step.
+    pub worn: u64,
+    /// Bodies that were stopped for the rest of a step since nothing could satisfy all that they touched.
+    pub squeezed: u64,
+    /// Searches in time that ended before the step did, and were taken up again where they had ended.
+    pub capped: u64,
     /// How often the work of each effect was done on a body or a contact.
     pub work: Counts,
 }

@@ -1,10 +1,14 @@
 //! Single bodies against what analysis says: bouncing, rolling, rocking, tunnelling, tumbling.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "what is expected may come from any library"
+)]
 
 mod support;
 
 use std::sync::Arc;
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use physics::{
     Compound, Effect, Effects, Material, Motion, PairContact, Pose, Response, Settings, Shape,
     World,
@@ -138,7 +142,7 @@ fn falls(pin_shape: &Arc<Compound>, angle: f64, direction: f64, e: f64, mu: f64)
     let mut def = pin(pin_shape, m, DVec3::ZERO);
     // Tilted about the point of the rim below.
     let axis = DVec3::new(direction.cos(), 0.0, direction.sin());
-    let rotation = glam::DQuat::from_axis_angle(axis, angle);
+    let rotation = DQuat::from_axis_angle(axis, angle);
     let outward = axis.cross(DVec3::Y);
     let lowest = [outward, -outward]
         .map(|o| (rotation * (o * BASE_RADIUS - DVec3::Y * PIN_CG)).y)
@@ -432,5 +436,46 @@ fn bodies_that_press_on_each_other_in_free_space_keep_their_angular_momentum() {
         }
         let off = (total(&world) - before).length() / before.length();
         assert!(off < 1e-11, "e {e} mu {mu}: off by {off}");
+    }
+}
+
+#[test]
+fn what_tumbles_end_over_end_beside_a_block_does_not_touch_it() {
+    // The top of the head sweeps a circle about the centre of mass; whole turns fit many times into a step.
+    let sweep = 0.3487 + 0.0323 - PIN_CG;
+    for (rate, clear, touches) in [
+        (300.0, 2e-3, false),
+        (1000.0, 0.03, false),
+        (1000.0, 0.05, false),
+        (1e4, 1e-3, false),
+        (300.0, -2e-3, true),
+        (1000.0, -0.01, true),
+    ] {
+        let mut world = World::new(Settings {
+            step_hz: 60.0,
+            gravity: DVec3::ZERO,
+            ..Settings::default()
+        })
+        .unwrap();
+        let m = material(0.7, 0.7);
+        let corner = DVec3::new(1.0, 0.2, 1.0);
+        world.add(block(m, -corner, corner * DVec3::new(1.0, 0.0, 1.0)));
+        let mut def = pin(&composite_pin(), m, DVec3::ZERO);
+        def.pose = Pose::new(DVec3::Y * (sweep + clear), DQuat::from_rotation_x(1.4));
+        def.angular_velocity = DVec3::X * rate;
+        world.add(def);
+        let (before, mut impacts) = (world.energy(), 0);
+        for _ in 0..60 {
+            world.step();
+            impacts += world.impacts().len();
+        }
+        assert_eq!(
+            impacts > 0,
+            touches,
+            "{impacts} impacts at {rate} rad/s, {clear} m"
+        );
+        if !touches {
+            assert!((world.energy() / before - 1.0).abs() < 1e-12);
+        }
     }
 }

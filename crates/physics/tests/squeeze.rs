@@ -115,3 +115,30 @@ fn balls_and_a_pin_in_a_row_between_hand_and_wall_keep_the_work_bounded() {
         assert!(world.energy() <= before + 1e-2 * before.abs() + 1e-3);
     }
 }
+
+#[test]
+fn departures_from_the_letter_are_counted() {
+    let m = material(1.0, 0.0);
+    // An elastic ball never meets the floor slowly; what is merely laid down does.
+    let mut world = room(1.0, 0.0);
+    world.add(ball(m, DVec3::Y));
+    let laid = |world: &mut World| {
+        world.add(ball(m, DVec3::new(1.0, BALL_RADIUS + 1e-6, 0.0)));
+        (0..72).for_each(|_| world.step());
+        world.effort()
+    };
+    (0..720).for_each(|_| world.step());
+    let bounced = world.effort();
+    assert!(bounced.impulses >= 1);
+    assert_eq!((bounced.slow, bounced.worn, bounced.squeezed), (0, 0, 0));
+    let laid = laid(&mut world);
+    assert!(laid.slow >= 1 && laid.worn == 0 && laid.squeezed == 0);
+    // Between a hand and the floor nothing can be satisfied.
+    let mut world = room(1.0, 0.0);
+    world.add(ball(m, DVec3::Y * BALL_RADIUS));
+    let (high, low) = (DVec3::Y * 0.4, DVec3::Y * 0.2);
+    let hand_id = world.add(hand(m, high));
+    press(&mut world, hand_id, high, low, 100);
+    let pressed = world.effort();
+    assert!(pressed.worn > 0 && pressed.squeezed > 0, "{pressed:?}");
+}

@@ -15,8 +15,14 @@ use crate::effects::Effect;
 use crate::query::{Placed, distance_to_point, gap_along};
 use crate::world::World;
 
-/// Most searches for one pair of parts in a step.
+/// Most searches for one pair of parts before other pairs have their turn.
 const SEARCHES: u32 = 40;
+/// Searches after which a part of the step that was short enough decides how long the next one is, and not the whole step.
+const PATIENCE: u32 = 20;
+/// Gap below which the two count as touching when the searches end [m]: what creeps along a surface so near is on it.
+const CLOSE: f64 = 1e-4;
+/// Share of the step that so many searches must win for the two to be looked at again; otherwise they count as touching.
+const PROGRESS: f64 = 1e-4;
 /// A dip between two times that is no deeper than this is not looked for [m].
 const DIP: f64 = 2e-6;
 /// Slower approach than this is none [m/s].
@@ -26,6 +32,8 @@ const APPROACH: f64 = 1e-9;
 pub(crate) struct Found {
     /// When they touch, if they do before the end of the step [s].
     pub time: Option<f64>,
+    /// When they are to be looked at again, the searches having ended before the step: they are apart until then [s].
+    pub again: Option<f64>,
     pub normal: DVec3,
     /// Proven gap at the start of the search [m].
     pub gap: f64,
@@ -98,6 +106,7 @@ impl<'a> Approach<'a> {
             if rough > bodies.0.reach + bodies.1.reach {
                 return Found {
                     time: None,
+                    again: None,
                     normal: known.normal,
                     gap: rough,
                     looks: 1,
@@ -144,13 +153,18 @@ impl<'a> Approach<'a> {
         if !self.world.plan.has(Effect::Continuous) {
             return self.found(None, 1);
         }
+        let start = self.time;
         for looks in 1..=SEARCHES {
             match self.bound() {
                 Bound::Apart => return self.found(None, looks),
                 Bound::Contact(time) => return self.found(Some(time), looks),
                 Bound::Unclear => self.end = 0.5 * (self.time + self.end),
                 Bound::Until(time) => {
+                    let span = 2.0 * (self.end - self.time);
                     (self.time, self.end) = (time, self.dt);
+                    if looks > PATIENCE && self.gap > CLOSE {
+                        self.end = self.dt.min(time + span);
+                    }
                     self.placed = self.placed_at(time);
                     let point = self.look();
                     if self.gap <= CONTACT && (self.touching || self.closing(point)) {
@@ -159,12 +173,21 @@ impl<'a> Approach<'a> {
                 }
             }
         }
+        // What turns many times in a step beside something is apart all the while, and the searches end before the step.
+        if self.gap > CLOSE && self.time - start > PROGRESS * self.dt {
+            let found = self.found(None, SEARCHES);
+            return Found {
+                again: Some(self.time),
+                ..found
+            };
+        }
         self.found(Some(self.time), SEARCHES)
     }
 
     fn found(&self, time: Option<f64>, looks: u32) -> Found {
         Found {
             time,
+            again: None,
             normal: self.normal,
             gap: self.proven,
             looks,
@@ -228,6 +251,9 @@ impl<'a> Approach<'a> {
     }
 
     /// Whether the bodies, at `time`, approach along `normal` at `point`, or begin to, or overlap and do not part.
+    ///
+    /// They turn as at their clocks: by how much that differs at `time` decides only where they graze, and the answer, which
+    /// brings both there first, strikes nothing that does not approach.
     fn closing(&self, point: DVec3) -> bool {
         let (a, b) = self.bodies;
         let t = self.time;

@@ -6,7 +6,7 @@ use super::base::Base;
 use super::pairs::Key;
 use super::patch::strike_point;
 use super::scratch::Answer;
-use super::search::{Event, What};
+use super::search::{Event, Next, What};
 use super::touch::Touch;
 use super::{PARTING, RELEASE, SINK};
 use crate::body::Body;
@@ -54,6 +54,7 @@ impl World {
                     self.effort.events += 1;
                     self.answer(key, next.time, dt, &mut answer);
                 }
+                What::Look { pair, .. } => self.look(pair, next.time, dt),
                 What::StretchEnds { slot, .. } => {
                     self.carry_on(slot as usize, next.time, dt, &mut answer);
                 }
@@ -68,14 +69,24 @@ impl World {
 
     /// Looks at a pair from `t` [s] on, and notes its next contact.
     fn look(&mut self, pair: u32, t: f64, dt: f64) {
-        if let Some((time, key)) = self.first_contact(pair, t, dt) {
+        if let Some((time, next)) = self.first_contact(pair, t, dt) {
             self.announced += 1;
+            let entry = self.pairs.get(pair);
+            let bodies = (entry.a, entry.b);
             let changes = |slot: u32| self.bodies[slot as usize].changes;
-            let changes = (changes(key.a), changes(key.b));
+            let changes = (changes(bodies.0), changes(bodies.1));
+            let what = match next {
+                Next::Contact(key) => What::Meet { key, changes },
+                Next::Look => What::Look {
+                    pair,
+                    bodies,
+                    changes,
+                },
+            };
             self.scratch.events.push(Event {
                 time,
                 number: self.announced,
-                what: What::Meet { key, changes },
+                what,
             });
         }
         self.wait(pair);
@@ -103,6 +114,9 @@ impl World {
         let now = |slot: u32| self.bodies[slot as usize].changes;
         match event.what {
             What::Meet { key, changes } => changes == (now(key.a), now(key.b)),
+            What::Look {
+                bodies, changes, ..
+            } => changes == (now(bodies.0), now(bodies.1)),
             What::StretchEnds { slot, changes } => changes == now(slot),
         }
     }
@@ -213,7 +227,11 @@ impl World {
             body.is_dynamic() && body.blows >= most
         };
         // A slow touch is the beginning of a lasting contact, and that has a friction of its own.
-        let is_soft = approach < self.resting_speed() || !elastic || worn(touch.a) || worn(touch.b);
+        let is_slow = approach < self.resting_speed();
+        let is_worn = !elastic || worn(touch.a) || worn(touch.b);
+        let is_soft = is_slow || is_worn;
+        self.effort.slow += u64::from(is_slow);
+        self.effort.worn += u64::from(is_worn && !is_slow);
         let impulse = self.impact_impulse(touch, slip, is_soft);
         touch.push(&mut self.bodies, impulse);
         for slot in [touch.a, touch.b] {
@@ -264,6 +282,7 @@ impl World {
             let body = &mut self.bodies[slot];
             if body.is_dynamic() && body.blows >= most {
                 body.squeezed = true;
+                self.effort.squeezed += 1;
                 // A broken state is not to look sound again: its body is frozen when the step ends.
                 if body.is_finite() {
                     body.halt();

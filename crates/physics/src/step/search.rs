@@ -26,6 +26,12 @@ pub(crate) struct Event {
 pub(crate) enum What {
     /// Two parts touch.
     Meet { key: Key, changes: (u32, u32) },
+    /// Two bodies are to be looked at again: they are proven apart no further than to this time.
+    Look {
+        pair: u32,
+        bodies: (u32, u32),
+        changes: (u32, u32),
+    },
     /// The stretch ends in which an island is carried, `slot` being one of its bodies.
     StretchEnds { slot: u32, changes: u32 },
 }
@@ -53,9 +59,16 @@ impl PartialEq for Event {
 
 impl Eq for Event {}
 
+/// What comes next between two bodies.
+pub(crate) enum Next {
+    Contact(Key),
+    Look,
+}
+
 impl World {
-    /// Earliest contact of two bodies after `t0`, both states standing at or before it, as far as their motion is known.
-    pub(crate) fn first_contact(&mut self, pair: u32, t0: f64, dt: f64) -> Option<(f64, Key)> {
+    /// Earliest contact of two bodies after `t0`, both states standing at or before it, as far as their motion is known; or
+    /// when they are to be looked at again, if that is before.
+    pub(crate) fn first_contact(&mut self, pair: u32, t0: f64, dt: f64) -> Option<(f64, Next)> {
         let entry = self.pairs.get(pair);
         let (a, b) = (entry.a as usize, entry.b as usize);
         let (pose_a, pose_b) = self.near(pair, t0)?;
@@ -71,7 +84,7 @@ impl World {
             Frame::new(&body_b.pose_until(until)),
         );
         let (ways, reach) = (body_a.path + body_b.path, body_a.reach + body_b.reach);
-        let mut first: Option<(f64, Key)> = None;
+        let mut first: Option<(f64, Next)> = None;
         let mut clearance = f64::INFINITY;
         for part in 0..self.pairs.get(pair).parts.clearances.len() {
             let known = self.pairs.get(pair).parts.clearances[part];
@@ -97,10 +110,15 @@ impl World {
             let gap = if entry.touching { 0.0 } else { found.gap };
             self.pairs.get_mut(pair).parts.clearances[part] = gap + ways;
             clearance = clearance.min(gap + ways);
-            if let Some(time) = found.time
-                && first.is_none_or(|f| time < f.0)
+            self.effort.capped += u64::from(found.again.is_some());
+            let next = match (found.time, found.again) {
+                (Some(time), _) => Some((time, Next::Contact(key))),
+                (None, again) => again.map(|time| (time, Next::Look)),
+            };
+            if let Some((time, _)) = next
+                && first.as_ref().is_none_or(|f| time < f.0)
             {
-                first = Some((time, key));
+                first = next;
             }
         }
         self.pairs.get_mut(pair).clearance = clearance;
