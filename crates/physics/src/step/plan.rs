@@ -64,25 +64,36 @@ impl Stage {
         }
     }
 
-    /// Effects that act in it.
+    /// Effects that act in it, or whose values are read in it.
+    ///
+    /// Impacts set struck bodies off anew, with all that carries them: what acts in `Carry` acts in `Strike` too.
     fn effects(self) -> &'static [Effect] {
         match self {
-            Stage::Drive | Stage::Gather => &[],
+            Stage::Drive => &[],
+            // Where down is, for what stands; whether a hand holds what rocks.
+            Stage::Gather => &[Effect::Gravity, Effect::Hand],
             Stage::Slow | Stage::SlowAgain => &[Effect::Drag],
             Stage::WakeHeld => &[Effect::Hand],
+            // Elasticity: what an edge gives back that tips over; hand: what it holds down is pushed out faster.
             Stage::Carry => &[
                 Effect::Gravity,
-                Effect::Friction,
-                Effect::Rotation,
-                Effect::Oil,
-                Effect::RollingResistance,
-            ],
-            Stage::Strike => &[
                 Effect::Elasticity,
                 Effect::Friction,
                 Effect::Rotation,
+                Effect::Gyroscopic,
+                Effect::Oil,
+                Effect::RollingResistance,
+                Effect::Hand,
+            ],
+            Stage::Strike => &[
+                Effect::Gravity,
+                Effect::Elasticity,
+                Effect::Friction,
+                Effect::Rotation,
+                Effect::Gyroscopic,
                 Effect::Continuous,
                 Effect::Oil,
+                Effect::RollingResistance,
                 Effect::Hand,
             ],
             Stage::Arrive => &[Effect::Rotation, Effect::Gyroscopic],

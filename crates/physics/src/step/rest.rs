@@ -171,6 +171,7 @@ impl World {
         for half in halves {
             self.effort.passes += u64::from(half.passes);
             work.add(Effect::RollingResistance, half.braked);
+            work.add(Effect::Rotation, half.circled);
         }
     }
 
@@ -261,7 +262,7 @@ impl World {
                     touch.set_point(patch.spots()[i].point, &self.bodies);
                 }
                 let allowed = self.allowed_approach(&touch, span);
-                if points > 1 {
+                if points > 1 || !self.plan.has(Effect::Rotation) {
                     touch.chord = DVec3::ZERO;
                 } else if touch.chord != DVec3::ZERO {
                     // What is elastic gives back what the chord's foremost end takes.

@@ -31,7 +31,7 @@ impl Row {
             .flatten()
     }
 
-    /// What a tilted base loses while it circles on its edge.
+    /// What a tilted base loses while it circles on its edge: part of how things turn here, and with `Effect::Rotation` alone.
     ///
     /// It stands on a chord of its rim, and circling tips it over the chord's foremost end. Rocking tips it about the chord,
     /// which costs nothing before the base is flat. A point would let a pin circle for ever.

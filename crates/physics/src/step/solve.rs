@@ -64,8 +64,9 @@ impl Halves {
 pub(crate) struct Work {
     /// Answers of single rows.
     pub passes: u32,
-    /// Contacts whose rolling was braked.
+    /// Contacts whose rolling was braked, and tilted bases whose circling was.
     pub braked: usize,
+    pub circled: usize,
 }
 
 /// Answers a group of rows that share bodies, until no pass changes a velocity by more than enough.
@@ -109,7 +110,7 @@ fn answer_group(rows: &mut [Row], all: &mut [Mover], bodies: &[Body], halves: &H
     if rows.iter().any(|row| row.resists(halves.rolling)) {
         let braked = brake_group(rows, all, bodies, halves);
         work.passes += braked.passes;
-        work.braked = braked.braked;
+        (work.braked, work.circled) = (braked.braked, braked.circled);
     }
     work
 }
@@ -139,7 +140,7 @@ fn brake_group(rows: &mut [Row], all: &mut [Mover], bodies: &[Body], halves: &Ha
     let (mut work, mut worst) = (Work::default(), 0.0_f64);
     for row in rows.iter() {
         if let Some(change) = row.circle(all) {
-            worst = worst.max(change);
+            (work.circled, worst) = (work.circled + 1, worst.max(change));
         }
         if let Some(change) = halves.rolling.and_then(|arm| row.brake(arm, all)) {
             (work.braked, worst) = (work.braked + 1, worst.max(change));
@@ -216,6 +217,7 @@ impl Carry {
             let group = answer_group(rows, &mut self.movers, bodies, halves);
             work.passes += group.passes;
             work.braked += group.braked;
+            work.circled += group.circled;
             start = *end;
         }
         work

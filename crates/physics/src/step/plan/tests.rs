@@ -83,6 +83,53 @@ fn coefficients_come_from_the_table_under_coulomb_alone() {
     }
 }
 
+/// Takes a step stage by stage; adds what each one counts.
+fn step_by_stages(world: &mut World, counted: &mut Vec<(Stage, Effect)>) {
+    let dt = world.dt();
+    world.impacts.clear();
+    world.steps += 1;
+    world.awake.sort_unstable();
+    for stage in world.plan.stages.clone() {
+        let before = world.effort.work;
+        world.run(stage, dt);
+        let work = world.effort.work;
+        let acts = |effect: &Effect| work.of(*effect) > before.of(*effect);
+        let new = Effect::ALL.into_iter().filter(acts);
+        counted.extend(new.map(|effect| (stage, effect)));
+    }
+    world.dismiss();
+}
+
+#[test]
+fn what_a_stage_counts_is_among_the_effects_that_it_lists() {
+    for response in [Response::UnoSlater, Response::Guarded, Response::Coulomb] {
+        let mut counted = Vec::new();
+        let throw = Throw::new(response, false);
+        for state in &throw.states {
+            let (mut world, mut other) = (state.clone(), state.clone());
+            for i in 0..20 {
+                let x = 0.01 * f64::from(i) - 0.3;
+                let target = Pose::from_position(DVec3::new(x, 0.3, -19.0));
+                world.drive_to(throw.hand, target);
+                other.drive_to(throw.hand, target);
+                step_by_stages(&mut world, &mut counted);
+                other.step();
+            }
+            assert_eq!(world.hash(), other.hash(), "these are the steps");
+        }
+        for (stage, effect) in &counted {
+            let listed = stage.effects().contains(effect);
+            assert!(listed, "{effect} acts in {}, {response:?}", stage.name());
+        }
+        for effect in Effect::ALL {
+            let acts = counted.iter().any(|(_, counted)| *counted == effect);
+            assert!(acts, "{effect}, {response:?}");
+        }
+        // Blows set bodies off anew, with all that acts on what is carried.
+        assert!(counted.contains(&(Stage::Strike, Effect::RollingResistance)));
+    }
+}
+
 /// Where a hand is out of reach.
 fn far_away() -> Pose {
     Pose::from_position(DVec3::new(0.0, 50.0, 100.0))
