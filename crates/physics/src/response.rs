@@ -56,17 +56,21 @@ pub fn compliance(inv_mass: f64, inv_inertia: &DMat3, arm: DVec3) -> DMat3 {
 pub fn impulse(response: Response, pair: Coefficients, n: DVec3, dv: DVec3, k: &DMat3) -> DVec3 {
     let approach = n.dot(dv);
     let (e, mu) = (pair.elasticity, pair.friction);
-    let smooth = smooth_impulse(e, n, dv, k);
     if mu == 0.0 || approach <= 0.0 {
-        return smooth;
+        return smooth_impulse(e, n, dv, k);
     }
     let inverse = k.inverse();
     if response == Response::Coulomb {
         let f00 = inelastic_impulse(n, dv, k);
-        let rub = -(inverse * dv) - f00;
+        let (smooth, rub) = (f00 * (1.0 + e), -(inverse * dv) - f00);
         return smooth + rub * share_in_cone(mu, -smooth.dot(n), n, rub);
     }
     let rough = rough_impulse(response, e, n, dv, &inverse);
+    let pulls = response == Response::Guarded && rough.dot(n) > 0.0;
+    if mu == 1.0 && !pulls {
+        return rough;
+    }
+    let smooth = smooth_impulse(e, n, dv, k);
     let mu = if response == Response::Guarded {
         rate_without_pull(mu, smooth.dot(n), rough.dot(n))
     } else {
@@ -111,12 +115,15 @@ fn rough_impulse(response: Response, e: f64, n: DVec3, dv: DVec3, k_inv: &DMat3)
         return f01;
     }
     // F11: dv' = -speed n with the energy kept; Eq. (7) leaves dv.K^-1 dv = speed^2 n.K^-1 n.
-    let energy = dv.dot(*k_inv * dv).max(0.0);
+    let energy = (-dv.dot(f01)).max(0.0);
     let mut speed = (energy / n.dot(*k_inv * n)).sqrt();
     if response == Response::Guarded {
         speed = speed.min(n.dot(dv));
     }
     let f11 = *k_inv * (-n * speed - dv);
+    if e == 1.0 {
+        return f11;
+    }
     f01 * (1.0 - e) + f11 * e
 }
 
@@ -126,7 +133,7 @@ pub(crate) fn rate_without_pull(mu: f64, smooth: f64, rough: f64) -> f64 {
     if pull <= 0.0 {
         mu
     } else {
-        (smooth / (smooth - rough)).clamp(0.0, mu)
+        (smooth / (smooth - rough)).clamp(0.0, mu.max(0.0))
     }
 }
 
