@@ -3,6 +3,10 @@
 //! Budget: the time of a step in which balls fall into all racks grows with the lanes to the power 1.05 at most, and a
 //! step in which one lane is awake costs the same among 256 as alone. Fewer lanes than throws are timed in several
 //! worlds, so that all numbers of lanes play the same mixture. The exponents are printed before criterion's times.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "a report may come from any library"
+)]
 #![allow(missing_docs, reason = "criterion's macros make undocumented items")]
 
 #[path = "../../app/shot/clock.rs"]

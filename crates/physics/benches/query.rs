@@ -5,6 +5,10 @@
 //! three contenders take turns in every round: `-- speed cyl-ell,box near,deep 500`. A pair is chosen by any part of
 //! its name. `-- accuracy [PAIRS] [CLASSES] [POSES] [SEED]` judges the answers, on all cores, and prints the first wrong
 //! ones of each row; `-- case PAIR CLASS INDEX [SEED]` shows one of them in full. `-- dial` tables accuracy against the cap. `-- report` writes docs/detection.md.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "a report may come from any library"
+)]
 
 #[path = "query/accuracy.rs"]
 mod accuracy;

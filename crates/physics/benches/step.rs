@@ -3,6 +3,10 @@
 //! `cargo bench -p physics --features peers --bench step -- report [ROUNDS]` measures shots, racks that stand and that sleep, the
 //! slowest steps and many lanes against the targets, and writes docs/step.md. Without `report` criterion times a
 //! simulated second of each. `run MODEL RATE` is what runs under valgrind.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "a report may come from any library"
+)]
 
 #[path = "../../app/shot/clock.rs"]
 mod clock;

@@ -1,4 +1,8 @@
 //! Certificates and times of impact, against brute force and closed forms.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "what is expected may come from any library"
+)]
 
 mod support;
 

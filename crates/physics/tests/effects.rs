@@ -1,4 +1,8 @@
 //! What a scene lists is computed and what it does not list is not; air, oil and rolling against what analysis says.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "what is expected may come from any library"
+)]
 
 mod support;
 

@@ -1,4 +1,8 @@
 //! The paper's rival: are its polyhedra what they should be, and does it see the overlaps that the detection sees?
+#![allow(
+    clippy::disallowed_methods,
+    reason = "what is expected may come from any library"
+)]
 
 mod support;
 

@@ -1,4 +1,8 @@
 //! Faces and lines that carry: stacks, slopes, leaning and lying things (hard cases 3.4 to 3.11).
+#![allow(
+    clippy::disallowed_methods,
+    reason = "what is expected may come from any library"
+)]
 
 mod support;
 

@@ -1,6 +1,10 @@
 //! Analytic and published values, `../data/checks.csv`: every row against a simulation or the detection.
 //!
 //! A row that nobody checks fails, and so does a check without a row. Tolerances are the table's.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "what is expected may come from any library"
+)]
 
 #[path = "../support/mod.rs"]
 mod support;

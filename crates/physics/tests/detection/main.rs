@@ -1,4 +1,8 @@
 //! The detection before a judge that shares no code with it.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "what is expected may come from any library"
+)]
 
 /// Answers in numbers: random poses far, near, touching and deep.
 mod accuracy;

@@ -3,6 +3,10 @@
     dead_code,
     reason = "every test binary uses its own part of the fixtures"
 )]
+#![allow(
+    clippy::disallowed_methods,
+    reason = "what is expected may come from any library"
+)]
 
 use std::sync::Arc;
 

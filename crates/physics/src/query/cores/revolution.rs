@@ -10,6 +10,12 @@ pub(in crate::query) struct RevolutionCore<'a> {
     pub profile: &'a Profile,
 }
 
+/// Multiplied out: the precision of `powi` is nowhere specified.
+#[inline(always)]
+fn cube(x: f64) -> f64 {
+    x * x * x
+}
+
 /// How far n leans from the axis where rounding along it starts to tell.
 const NEAR_AXIS: f64 = 0.1;
 
@@ -69,14 +75,14 @@ impl Core for RevolutionCore<'_> {
     fn curvature(&self, n: DVec3, tip: &Tip, u: DVec3, w: DVec3) -> [f64; 3] {
         let rim = self.axis.cross(n);
         let (p, q) = (rim.dot(u), rim.dot(w));
-        let f = self.profile.radius[usize::from(tip.sides & 1)] * tip.inverse.powi(3);
+        let f = self.profile.radius[usize::from(tip.sides & 1)] * cube(tip.inverse);
         [f * p * p, f * p * q, f * q * q]
     }
 
     #[inline(always)]
     fn curvature_along(&self, n: DVec3, tip: &Tip, e: DVec3) -> f64 {
         let p = self.axis.cross(n).dot(e);
-        self.profile.radius[usize::from(tip.sides & 1)] * tip.inverse.powi(3) * p * p
+        self.profile.radius[usize::from(tip.sides & 1)] * cube(tip.inverse) * p * p
     }
 
     /// The normals of the mantle, along which it is a straight line.

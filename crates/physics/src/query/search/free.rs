@@ -51,7 +51,8 @@ impl<A: Core, B: Core> Search<'_, A, B> {
         let (u, w) = n.any_orthonormal_pair();
         let g = (u.dot(d), w.dot(d));
         let across = g.0 * g.0 + g.1 * g.1;
-        let level = across <= (LINED_UP * pair.size).powi(2);
+        let lined_up = LINED_UP * pair.size;
+        let level = across <= lined_up * lined_up;
         if level && s > 0.0 {
             return Step::Done;
         }
