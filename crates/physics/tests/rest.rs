@@ -157,7 +157,8 @@ fn pins_that_are_hulls_stand_awake_under_every_law() {
 
 #[test]
 fn a_nudged_rack_that_has_settled_stands_for_minutes() {
-    for (response, step_hz) in LAWS.into_iter().zip([60.0, 90.0, 240.0]) {
+    let rates = [60.0, 90.0, 240.0];
+    for (response, step_hz) in LAWS.into_iter().flat_map(|law| rates.map(|hz| (law, hz))) {
         for (shape, e, mu) in [
             (composite_pin(), 0.49, 0.49),
             (ellipsoid_pin(), 0.0, 0.7),
