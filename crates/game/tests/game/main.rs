@@ -1,5 +1,9 @@
 //! The game as a participant meets it: real physics, everything through inputs.
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on fails")]
+#![allow(
+    clippy::disallowed_methods,
+    reason = "what is expected may come from any library"
+)]
 
 /// Help for throws.
 mod assist;
