@@ -136,27 +136,17 @@ pub struct StaircaseArguments {
     #[arg(long, value_name = "VALUE", allow_negative_numbers = true)]
     pub furthest: Option<f64>,
 
-    /// With --scheme staircase: how the next difference is chosen.
-    #[arg(long, value_enum, default_value_t = RuleChoice::Bayesian)]
-    pub rule: RuleChoice,
+    /// With --scheme staircase: how the next difference is chosen [default: bayesian].
+    #[arg(long, value_enum)]
+    pub rule: Option<RuleChoice>,
 
-    /// With --scheme staircase: pairs of throws of a participant, those without a difference included.
-    #[arg(
-        long,
-        value_name = "N",
-        allow_negative_numbers = true,
-        default_value_t = 40
-    )]
-    pub pairs: u32,
+    /// With --scheme staircase: pairs of throws of a participant, those without a difference included [default: 40].
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub pairs: Option<u32>,
 
-    /// With --scheme staircase: share of pairs without a difference, 0 to 0.5.
-    #[arg(
-        long,
-        value_name = "SHARE",
-        allow_negative_numbers = true,
-        default_value_t = 0.2
-    )]
-    pub catch_share: f64,
+    /// With --scheme staircase: share of pairs without a difference, 0 to 0.5 [default: 0.2].
+    #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
+    pub catch_share: Option<f64>,
 }
 
 /// How the next difference is chosen.

@@ -154,7 +154,7 @@ pub fn kept(
 pub fn read_open(path: &Path) -> Result<Story> {
     let bytes = fs::read(path).with_context(|| {
         format!(
-            "cannot read {}: give the folder that `bowling play` printed at its end",
+            "cannot read {}: give the folder that `bowling play` printed at its end, or a session's of a study, data/sourcedata/sub-.../ses-01",
             path.display()
         )
     })?;

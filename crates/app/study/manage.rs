@@ -43,9 +43,13 @@ pub fn new(arguments: &NewStudyArguments, root: &Path) -> Result<()> {
         entropy(),
         root,
     )?;
-    print!("{}", balance(&study.plan().design(), study.rows()));
+    match &study.plan().staircase {
+        Some(plan) => println!("{}", pairs_text(plan, study.plan().subjects)),
+        None => print!("{}", balance(&study.plan().design(), study.rows())),
+    }
     let unfilled = study.consent_form().unfilled();
     println!("\nStudy in {}.", study.root().display());
+    remind(&study);
     if !unfilled.is_empty() {
         println!(
             "The consent form still has the empty fields {}: no session begins before a study has them (--laboratory, --contact).",
@@ -89,6 +93,10 @@ pub fn create(
         ("withdrawal_until", &about.withdrawal_until),
     ]);
     let (plan, rows) = Plan::new(&scheme, arguments.subjects, arguments.seed, about, rules)?;
+    // What no session could be played with must not make a folder.
+    if plan.staircase.is_none() {
+        seat::check_design(&plan.design(), &plan.session, root)?;
+    }
     let questionnaire = files::read(questionnaire)?;
     Ok(Study::create(
         &arguments.folder,
@@ -100,17 +108,31 @@ pub fn create(
     )?)
 }
 
+/// Pairs of throws of a participant where nobody says, those without a difference included.
+const USUAL_PAIRS: u32 = 40;
+/// Share of pairs without a difference where nobody says.
+const USUAL_CATCH_SHARE: f64 = 0.2;
+
 /// The scheme that is asked for; a staircase is tried out.
 fn scheme(arguments: &PlanArguments, root: &Path) -> Result<Scheme> {
     let asked = &arguments.staircase;
     let values = (&asked.parameter, asked.standard, asked.furthest);
     if arguments.scheme != "staircase" {
-        if values != (&None, None, None) {
+        let how = (asked.rule, asked.pairs, asked.catch_share);
+        if values != (&None, None, None) || how != (None, None, None) {
             bail!(unusable(
-                "--parameter, --standard and --furthest belong to --scheme staircase"
+                "--parameter, --standard, --furthest, --rule, --pairs and --catch-share belong to --scheme staircase"
             ));
         }
         return Ok(Scheme::named(&arguments.scheme));
+    }
+    if arguments.items_after_each_game
+        || arguments.allow_undue_presses
+        || arguments.training_in_the_scene
+    {
+        bail!(unusable(
+            "--items-after-each-game, --allow-undue-presses and --training-in-the-scene belong to games, which --scheme staircase has none of"
+        ));
     }
     let (Some(key), Some(standard), Some(furthest)) = values else {
         bail!(unusable(
@@ -122,23 +144,44 @@ fn scheme(arguments: &PlanArguments, root: &Path) -> Result<Scheme> {
         standard,
         furthest,
         rule: match asked.rule {
-            RuleChoice::OneUpTwoDown => Rule::OneUpTwoDown,
-            RuleChoice::Bayesian => Rule::Bayesian,
+            Some(RuleChoice::OneUpTwoDown) => Rule::OneUpTwoDown,
+            Some(RuleChoice::Bayesian) | None => Rule::Bayesian,
         },
-        trials: asked.pairs,
-        catch_share: asked.catch_share,
+        trials: asked.pairs.unwrap_or(USUAL_PAIRS),
+        catch_share: asked.catch_share.unwrap_or(USUAL_CATCH_SHARE),
     };
     plan.check()?;
     seat::check_staircase(&plan, root)?;
     Ok(Scheme::Staircase(plan))
 }
 
-/// Prints the balance of a study's allocation.
+/// What a study of differences compares; it has no games whose order and buttons could be balanced.
+fn pairs_text(plan: &StaircasePlan, subjects: u32) -> String {
+    let rule = match plan.rule {
+        Rule::OneUpTwoDown => "one-up two-down",
+        Rule::Bayesian => "Bayesian",
+    };
+    format!(
+        "{subjects} participants, {} pairs of throws each, {:.0} % of them without a difference.\n{} is {} in one throw of a pair and from \
+         there to {} in the other; which comes first is drawn pair by pair.\nThe next difference is chosen by the {rule} rule.",
+        plan.trials,
+        100.0 * plan.catch_share,
+        plan.key,
+        plan.standard,
+        plan.furthest,
+    )
+}
+
+/// Prints the balance of a study's allocation, or what its pairs compare.
 ///
 /// # Errors
 /// When there is no study, or its allocation has not what its design promises.
 pub fn verify(folder: &Path) -> Result<()> {
     let study = Study::open(folder)?;
+    if let Some(plan) = &study.plan().staircase {
+        println!("{}", pairs_text(plan, study.plan().subjects));
+        return Ok(());
+    }
     let balance: Balance = balance(&study.plan().design(), study.rows());
     print!("{balance}");
     if !balance.problems.is_empty() {
@@ -160,6 +203,7 @@ pub fn status(folder: &Path) -> Result<()> {
         assignments.len(),
         study.plan().subjects
     );
+    remind(&study);
     let mut damaged = 0;
     for assignment in assignments {
         let participant = assignment.participant;
@@ -192,6 +236,18 @@ pub fn status(folder: &Path) -> Result<()> {
         );
     }
     Ok(())
+}
+
+/// Says what is due by now of keeping data.
+fn remind(study: &Study) {
+    let now = utc_now();
+    let reminder = study
+        .plan()
+        .about
+        .reminder(now.get(..10).unwrap_or_default());
+    if let Some(reminder) = reminder {
+        println!("Reminder: {reminder}.");
+    }
 }
 
 /// What pairs of throws have come to.

@@ -1,14 +1,15 @@
 //! A slot of the plan as the settings of a session.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use experiment::plan::Button as Colour;
+use experiment::plan::{Button as Colour, Cell, Condition, Design, SessionRules};
 use experiment::protocol::Note;
 use experiment::random::SplitMix64;
 use experiment::staircase::StaircasePlan;
 use experiment::study::{Lock, ParticipantId, Study};
-use game::{Conditions, Config, Game};
+use game::{Conditions, Config, ConfigError, Game};
 
 use super::folder::{self, SESSION};
 use crate::journal::{Continues, Story};
@@ -69,7 +70,7 @@ pub fn with_value(config: &Config, key: &str, value: f64) -> Result<Config> {
 /// # Errors
 /// One sentence when they cannot.
 pub fn check_staircase(plan: &StaircasePlan, root: &Path) -> Result<()> {
-    let base = Config::load(&root.join("config"), SCENE, None, &[NO_REPLAY.to_owned()])?;
+    let base = load(&[], root)?;
     let end = |value| with_value(&base, &plan.key, value);
     let conditions = Conditions {
         lobby: end(plan.standard)?,
@@ -80,6 +81,55 @@ pub fn check_staircase(plan: &StaircasePlan, root: &Path) -> Result<()> {
     Ok(())
 }
 
+/// Whether each pair of conditions that a design has can be played.
+///
+/// # Errors
+/// One sentence for the first that cannot.
+pub fn check_design(design: &Design, rules: &SessionRules, root: &Path) -> Result<()> {
+    let mut loaded: BTreeMap<&Condition, Config> = BTreeMap::new();
+    for condition in design.cells.iter().flat_map(|cell| [&cell.low, &cell.high]) {
+        if !loaded.contains_key(condition) {
+            let settings = texts(design.settings(condition));
+            let config = load(&settings, root)
+                .with_context(|| format!("the scheme's condition {condition} cannot be played"))?;
+            loaded.insert(condition, config);
+        }
+    }
+    let scene = load(&[], root)?;
+    for Cell { low, high, .. } in &design.cells {
+        let lobby = match rules.training_in_first_condition {
+            true => &loaded[low],
+            false => &scene,
+        };
+        let conditions = Conditions {
+            lobby: lobby.clone(),
+            red: loaded[low].clone(),
+            blue: loaded[high].clone(),
+        };
+        Game::new(conditions, rules.frames_per_game).with_context(|| {
+            format!("the scheme's conditions {low} and {high} cannot be played in one session")
+        })?;
+    }
+    Ok(())
+}
+
+/// The scene of a study with some settings of its own.
+fn load(own: &[(&str, String)], root: &Path) -> Result<Config, ConfigError> {
+    let mut settings = vec![NO_REPLAY.to_owned()];
+    settings.extend(own.iter().map(|(key, value)| format!("{key}={value}")));
+    Config::load(&root.join("config"), SCENE, None, &settings)
+}
+
+/// Keys and values as the command line has them.
+fn texts<'a, V: ToString>(
+    settings: impl IntoIterator<Item = (&'a str, V)>,
+) -> Vec<(&'a str, String)> {
+    let settings = settings.into_iter();
+    settings
+        .map(|(key, value)| (key, value.to_string()))
+        .collect()
+}
+
 /// The settings of the session in `slot`: what Red and Blue stand for, and the room before the first game.
 ///
 /// # Errors
@@ -87,9 +137,7 @@ pub fn check_staircase(plan: &StaircasePlan, root: &Path) -> Result<()> {
 pub fn conditions(study: &Study, slot: u32, root: &Path) -> Result<Conditions> {
     let guidance = study.plan().session.guidance.settings();
     if let Some(plan) = &study.plan().staircase {
-        let mut settings = vec![NO_REPLAY.to_owned()];
-        settings.extend(guidance.map(|(key, is_on)| format!("{key}={is_on}")));
-        let base = Config::load(&root.join("config"), SCENE, None, &settings)?;
+        let base = load(&texts(guidance), root)?;
         let standard = with_value(&base, &plan.key, plan.standard)?;
         return Ok(Conditions {
             lobby: standard.clone(),
@@ -99,19 +147,17 @@ pub fn conditions(study: &Study, slot: u32, root: &Path) -> Result<Conditions> {
     }
     let row = study.row(slot);
     let design = study.plan().design();
-    let load = |colour: Option<Colour>| {
+    let of = |colour: Option<Colour>| {
         let varied = colour.map(|colour| row.settings(&design, colour));
-        let varied = varied.unwrap_or_default().into_iter();
-        let mut settings = vec![NO_REPLAY.to_owned()];
-        settings.extend(varied.map(|(key, value)| format!("{key}={value}")));
-        settings.extend(guidance.map(|(key, is_on)| format!("{key}={is_on}")));
-        Config::load(&root.join("config"), SCENE, None, &settings)
+        let mut settings = texts(varied.unwrap_or_default());
+        settings.extend(texts(guidance));
+        load(&settings, root)
     };
     let first = study.plan().session.training_in_first_condition;
     Ok(Conditions {
-        lobby: load(first.then(|| row.button(1)))?,
-        red: load(Some(Colour::Red))?,
-        blue: load(Some(Colour::Blue))?,
+        lobby: of(first.then(|| row.button(1)))?,
+        red: of(Some(Colour::Red))?,
+        blue: of(Some(Colour::Blue))?,
     })
 }
 

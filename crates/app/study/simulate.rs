@@ -15,7 +15,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::run::{bowl, seed, simulated, simulated_consent};
 use super::seat::{self, Guest};
 use super::{manage, tables};
-use crate::args::SimulateArguments;
+use crate::args::{SimulateArguments, unusable};
 use crate::pictures::Wanted;
 use crate::play;
 
@@ -29,6 +29,7 @@ const FOR_EVER: &str = "9999-12-31";
 /// # Errors
 /// When the study cannot be made or a participant does not get through; what is done then stays, and is in order.
 pub fn simulate(arguments: &SimulateArguments, root: &Path) -> Result<()> {
+    check(arguments)?;
     let stop = play::interruption()?;
     let begun = Instant::now();
     let about = About {
@@ -81,6 +82,19 @@ pub fn simulate(arguments: &SimulateArguments, root: &Path) -> Result<()> {
         study.root().display()
     );
     Ok(())
+}
+
+/// What only simulated participants have must fit before anything is made.
+fn check(arguments: &SimulateArguments) -> Result<()> {
+    match arguments.threshold {
+        Some(_) if arguments.plan.scheme != "staircase" => {
+            bail!(unusable("--threshold belongs to --scheme staircase"))
+        }
+        Some(threshold) if !(threshold.is_finite() && threshold > 0.0) => bail!(unusable(format!(
+            "--threshold is {threshold}, and has to be a number above 0"
+        ))),
+        _ => Ok(()),
+    }
 }
 
 fn bar(count: usize) -> ProgressBar {

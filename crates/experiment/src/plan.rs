@@ -206,6 +206,19 @@ impl Design {
         groups
     }
 
+    /// What a condition sets: configuration keys and their values; of a range the end that the level is drawn near.
+    pub fn settings(&self, condition: &Condition) -> Vec<(&str, Value)> {
+        let levels = self.factors.iter().zip(&condition.0);
+        let set = levels.filter_map(|(factor, level)| {
+            let value = match &factor.levels {
+                Levels::Fixed(values) => values.get(usize::from(*level))?.clone(),
+                Levels::Range { from, to } => Value::Number(if *level == 0 { *from } else { *to }),
+            };
+            Some((factor.key.as_str(), value))
+        });
+        set.collect()
+    }
+
     /// Whether some factor's values are drawn slot by slot.
     pub fn is_continuous(&self) -> bool {
         let drawn = |factor: &Factor| matches!(factor.levels, Levels::Range { .. });

@@ -228,14 +228,18 @@ fn set_values(design: &Design, factor: usize, rows: &mut [Row], random: &mut Spl
             }
         }
         Levels::Range { from, to } => {
+            // Four decimals of a range of 1, so that the table has the very value.
+            let finest = pow10(4 - libm::floor(libm::log10((to - from).abs())) as i32);
             let mut halves = [0, 1].map(|level| spread_out(level, factor, rows, random));
             for row in rows {
                 let mut draw = |level: u8| {
                     let part = halves[usize::from(level)]
                         .pop()
                         .expect("as many as rows that have the level");
-                    // Four decimals, so that the table has the very value.
-                    Value::Number(((from + (to - from) * part) * 1e4).round() / 1e4)
+                    let value = from + (to - from) * part;
+                    Value::Number(
+                        ((value * finest).round() / finest).clamp(from.min(*to), from.max(*to)),
+                    )
                 };
                 let (low, high) = (row.low.0[factor], row.high.0[factor]);
                 let low_value = draw(low);
@@ -249,6 +253,11 @@ fn set_values(design: &Design, factor: usize, rows: &mut [Row], random: &mut Spl
             }
         }
     }
+}
+
+/// A power of ten, exact up to 22.
+fn pow10(exponent: i32) -> f64 {
+    10_f64.powi(exponent.clamp(-22, 22))
 }
 
 /// One part of the range, within the half of `level`, for every row that has this level: one in each of as many equal strata.
@@ -268,6 +277,28 @@ fn spread_out(level: u8, factor: usize, rows: &[Row], random: &mut SplitMix64) -
 mod tests {
     use super::super::{Balance, Scheme, balance};
     use super::*;
+
+    /// Rounding to a fixed number of decimals would make two or three values of a small range.
+    #[test]
+    fn values_of_a_small_range_are_all_different_and_within_it() {
+        let mut design = Scheme::Continuous.design().unwrap();
+        let (from, to) = (3e-6, 5e-5);
+        design.factors[0].levels = Levels::Range { from, to };
+        let rows = allocate(&design, 48, 1997);
+        let mut values: Vec<f64> = rows
+            .iter()
+            .flat_map(|row| [&row.low_values[0], &row.high_values[0]])
+            .map(|value| match value {
+                Value::Number(number) => *number,
+                Value::Text(word) => panic!("{word} is no number"),
+            })
+            .collect();
+        values.sort_by(f64::total_cmp);
+        assert!(values[0] >= from && *values.last().unwrap() <= to);
+        values.dedup();
+        // A value for each participant, two where it is what changes: a third of them.
+        assert!(values.len() >= 60, "{}", values.len());
+    }
 
     fn plan(scheme: &Scheme, subjects: u32, seed: u64) -> Balance {
         let design = scheme.design().unwrap();

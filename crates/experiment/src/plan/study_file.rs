@@ -313,6 +313,13 @@ impl Plan {
                 return wrong(format!("{date:?} is no date: it has to be YYYY-MM-DD"));
             }
         }
+        // Days in this form are in order as texts are.
+        if about.withdrawal_until > about.retention_until {
+            return wrong(format!(
+                "data can be erased until {} and are kept until {}: nobody can erase what is not kept any more",
+                about.withdrawal_until, about.retention_until
+            ));
+        }
         if about.title.trim().is_empty() || about.title.chars().any(char::is_control) {
             return wrong("the title is empty or has a line break".to_owned());
         }
@@ -360,6 +367,17 @@ pub(crate) mod tests {
             error.contains("not the one that the plan was made with"),
             "{error}"
         );
+    }
+
+    #[test]
+    fn data_that_are_not_kept_cannot_be_erased_later() {
+        let about = About {
+            withdrawal_until: "2037-01-01".to_owned(),
+            ..about()
+        };
+        let error = plan(18, 1997, about, SessionRules::default()).unwrap_err();
+        let error = error.to_string();
+        assert!(error.contains("until 2037-01-01 and are kept"), "{error}");
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::{Table, Tables, answers, motion, pairs, sessions};
 use crate::files::{self, FileError};
-use crate::record::SessionRecord;
+use crate::record::{SessionRecord, Task};
 use crate::study::{ParticipantId, Study};
 
 /// How a copy is made.
@@ -61,11 +61,10 @@ impl Export {
         records: &[SessionRecord],
         folder: &Path,
     ) -> Result<Exported, ExportError> {
-        files::create_folder(folder)?;
-        let place = |path: &Path| path.canonicalize().map_err(FileError::at("find", path));
-        if place(folder)?.starts_with(place(study.root())?) {
+        if lies_in(folder, study.root())? {
             return Err(ExportError::Inside(folder.to_path_buf()));
         }
+        files::create_folder(folder)?;
         if std::fs::read_dir(folder)
             .map_err(FileError::at("list", folder))?
             .next()
@@ -110,6 +109,14 @@ impl Export {
         }
         Ok(exported)
     }
+}
+
+/// Whether a folder, which need not be there yet, is another one or lies in it.
+fn lies_in(folder: &Path, other: &Path) -> Result<bool, FileError> {
+    let place = |path: &Path| path.canonicalize().map_err(FileError::at("find", path));
+    let whole = std::path::absolute(folder).map_err(FileError::at("find", folder))?;
+    let there = whole.ancestors().find(|path| path.exists());
+    Ok(place(there.unwrap_or(folder))?.starts_with(place(other)?))
 }
 
 fn note(ids: &mut Vec<ParticipantId>, record: &SessionRecord) {
@@ -165,11 +172,15 @@ impl Tables<'_> {
             ];
             add(&mut of_sessions, sessions::sessions(&[record]), &key[..1]);
             for run in &record.runs {
+                let game = match run.task {
+                    Task::Game { number, .. } => number.to_string(),
+                    Task::Pairs => String::new(),
+                };
                 let run_key = [
                     key[0].clone(),
                     key[1].clone(),
                     ("run", run.number.to_string()),
-                    ("game", run.game.to_string()),
+                    ("game", game),
                 ];
                 add(&mut joined, motion::events(run), &run_key);
             }
