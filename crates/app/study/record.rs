@@ -5,10 +5,11 @@ mod device;
 use std::collections::VecDeque;
 
 use anyhow::{Context, Result};
-use experiment::plan::Button as Colour;
 use experiment::protocol::{AnsweredIn, Note};
 use experiment::questionnaire::{Form, Logged, Stage};
-use experiment::record::{EventRow, FilledForm, MotionRow, Run, SessionRecord, Status, TrialType};
+use experiment::record::{
+    EventRow, FilledForm, MotionRow, Run, SessionRecord, Status, Task, TrialType,
+};
 use experiment::study::{ParticipantId, Study};
 use game::{EventKind, Game, Model, TrackedPart};
 use physics::Pose;
@@ -24,8 +25,14 @@ pub struct Scribe {
     rate_hz: f64,
     /// When the game waited for its device: after how many inputs, and how long [s].
     pauses: VecDeque<(usize, Option<f64>)>,
+    /// Throws of pairs, by how many inputs there were before the alley was laid out for each: pair and throw.
+    throws: VecDeque<(usize, [u32; 2])>,
+    /// The throw of a pair that is to be made.
+    throw: Option<[u32; 2]>,
     frames: usize,
     runs: Vec<Run>,
+    /// When each run began, since the session did [s].
+    begins: Vec<f64>,
     /// What happened before the first game, by time since the session began.
     training: Vec<EventRow>,
     /// When the run under way began, since the session did [s].
@@ -41,7 +48,17 @@ pub struct Scribe {
 impl Scribe {
     /// Of a session that a journal tells.
     pub fn new(story: &Story) -> Self {
+        let number = |note: &serde_json::Value, key: &str| note[key].as_u64().unwrap_or(0) as u32;
+        let laid_out = story
+            .notes
+            .iter()
+            .filter(|(_, note)| note["note"] == "throw");
+        let throws =
+            laid_out.map(|(at, note)| (*at, [number(note, "pair"), number(note, "throw")]));
         Self {
+            throws: throws.collect(),
+            throw: None,
+            begins: Vec::new(),
             rate_hz: device::provenance(&story.header, &story.device).refresh_hz,
             pauses: device::pauses(&story.device).into(),
             frames: 0,
@@ -57,6 +74,12 @@ impl Scribe {
 
     /// Takes down the frame that `game` has finished.
     pub fn frame(&mut self, game: &Game) {
+        while let Some((_, throw)) = self.throws.pop_front_if(|(at, _)| *at <= self.frames) {
+            self.throw = Some(throw);
+            if self.run_began.is_none() {
+                self.begin(game.time(), Task::Pairs);
+            }
+        }
         for event in game.events() {
             self.event(game, &event.kind);
         }
@@ -79,7 +102,12 @@ impl Scribe {
     fn event(&mut self, game: &Game, kind: &EventKind) {
         let now = game.time();
         match kind {
-            EventKind::GameStarted { button } => self.begin(now, colour(*button)),
+            EventKind::GameStarted { button } => {
+                let button = colour(*button);
+                let number = self.games_over + 1;
+                self.begin(now, Task::Game { number, button });
+                self.row(now, TrialType::GameStart, |row| row.button = Some(button));
+            }
             EventKind::GameOver { button, .. } => {
                 self.row(now, TrialType::GameEnd, |row| {
                     row.button = Some(colour(*button));
@@ -90,11 +118,19 @@ impl Scribe {
             EventKind::Released(release) if matches!(release.model, Model::Ball(_)) => {
                 self.released = now;
             }
-            EventKind::Settled { fallen, .. } if self.run_began.is_none() => {
+            EventKind::Settled { fallen, .. } if !self.is_game() => {
                 let (released, pins) = (self.released, fallen.len() as u32);
-                self.row(released, TrialType::TrainingThrow, |row| {
+                // What is thrown while a pair is asked about does not count either.
+                let throw = self.throw.take();
+                let kind = match throw {
+                    Some(_) => TrialType::BallRoll,
+                    None => TrialType::TrainingThrow,
+                };
+                self.row(released, kind, |row| {
                     row.duration_s = Some(now - released);
                     row.pins_down = Some(pins);
+                    row.frame = throw.map(|[pair, _]| pair);
+                    row.ball = throw.map(|[_, throw]| throw);
                 });
             }
             EventKind::Rolled {
@@ -131,19 +167,24 @@ impl Scribe {
         }
     }
 
-    fn begin(&mut self, now: f64, button: Colour) {
+    /// Whether a game is under way.
+    fn is_game(&self) -> bool {
+        let task = self.runs.last().map(|run| run.task);
+        self.run_began.is_some() && matches!(task, Some(Task::Game { .. }))
+    }
+
+    fn begin(&mut self, now: f64, task: Task) {
         self.end_run();
         self.run_began = Some(now);
+        self.begins.push(now);
         self.runs.push(Run {
             number: self.runs.len() as u32 + 1,
-            game: self.games_over + 1,
-            button,
+            task,
             began: String::new(),
             sampling_hz: self.rate_hz,
             motion: Vec::new(),
             events: Vec::new(),
         });
-        self.row(now, TrialType::GameStart, |row| row.button = Some(button));
     }
 
     fn tracking(&mut self, now: f64, part: TrackedPart, found: bool) {
@@ -237,18 +278,13 @@ impl Scribe {
     /// Counts the times of a run's rows from its own beginning, and puts them in their order.
     fn settle(&mut self, session_began: &str) -> Result<()> {
         let mut training = std::mem::take(&mut self.training);
-        for run in &mut self.runs {
+        for (run, began) in self.runs.iter_mut().zip(&self.begins) {
             run.events.splice(0..0, training.drain(..));
-            let began = run
-                .events
-                .iter()
-                .find(|row| row.trial_type == TrialType::GameStart)
-                .map_or(0.0, |row| row.onset_s);
             for row in &mut run.events {
                 row.onset_s -= began;
             }
             run.events.sort_by(|a, b| a.onset_s.total_cmp(&b.onset_s));
-            run.began = output::utc_later(session_began, began)
+            run.began = output::utc_later(session_began, *began)
                 .with_context(|| format!("{session_began:?} is no time"))?;
         }
         Ok(())

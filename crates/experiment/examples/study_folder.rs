@@ -9,7 +9,7 @@ use experiment::protocol::AnsweredIn;
 use experiment::questionnaire::{Form, Stage};
 use experiment::random::SplitMix64;
 use experiment::record::{
-    EventRow, FilledForm, HeadResponse, MotionRow, Provenance, Run, SessionRecord, Status,
+    EventRow, FilledForm, HeadResponse, MotionRow, Provenance, Run, SessionRecord, Status, Task,
     TrialType,
 };
 use experiment::study::{Lock, Study};
@@ -178,8 +178,10 @@ fn run(game: u8, button: Button) -> Run {
     });
     Run {
         number: u32::from(game),
-        game,
-        button,
+        task: Task::Game {
+            number: game,
+            button,
+        },
         began: format!("2026-11-22T10:{}0:00.000000Z", game),
         sampling_hz: 90.0,
         motion: motion.collect(),

@@ -22,7 +22,7 @@ pub struct SessionRecord {
     pub consent: Consent,
     /// The forms that were filled in, in the order in which they were begun.
     pub forms: Vec<FilledForm>,
-    /// The games that were begun.
+    /// The games that were begun; in a study of differences one run with all pairs.
     pub runs: Vec<Run>,
     /// The pairs of throws that were compared, in a study of differences.
     pub pairs: Option<Pairs>,
@@ -97,15 +97,13 @@ pub struct Provenance {
     pub settings_digest: String,
 }
 
-/// One game as the tracker saw it.
+/// One game, or a session's pairs of throws, as the tracker saw it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Run {
     /// Number of the run, from 1: a game that was begun anew after an interruption is another run.
     pub number: u32,
-    /// Which game, 1 or 2.
-    pub game: u8,
-    /// Its button.
-    pub button: Button,
+    /// What was done in it.
+    pub task: Task,
     /// When it began, UTC, RFC 3339.
     pub began: String,
     /// Rows per second that were intended [Hz].
@@ -114,6 +112,30 @@ pub struct Run {
     pub motion: Vec<MotionRow>,
     /// What happened.
     pub events: Vec<EventRow>,
+}
+
+/// What is done in a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Task {
+    /// A game.
+    Game {
+        /// Which, 1 or 2.
+        number: u8,
+        /// Its button.
+        button: Button,
+    },
+    /// Pairs of throws.
+    Pairs,
+}
+
+impl Task {
+    /// As the names of files have it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Task::Game { .. } => "bowling",
+            Task::Pairs => "pairs",
+        }
+    }
 }
 
 /// Head and hand at one instant, in the world frame.
@@ -138,9 +160,9 @@ pub struct EventRow {
     pub trial_type: TrialType,
     /// The button that it belongs to.
     pub button: Option<Button>,
-    /// Bowling frame, 1 to 10.
+    /// Bowling frame, 1 to 10; in a run of pairs the pair, from 1.
     pub frame: Option<u32>,
-    /// Ball in the frame, 1 to 3.
+    /// Ball in the frame, 1 to 3; in a run of pairs the throw of the pair, 1 or 2.
     pub ball: Option<u32>,
     /// Pins knocked down by this ball.
     pub pins_down: Option<u32>,

@@ -67,7 +67,10 @@ impl<'a> Tables<'a> {
         let dictionary = answers::presence_dictionary(questionnaire, &presence);
         self.put_with_dictionary("phenotype/presence", &presence, dictionary)?;
         self.put(
-            &self.folder.join("task-bowling_events.json"),
+            &self.folder.join(match self.study.plan().staircase {
+                Some(_) => "task-pairs_events.json",
+                None => "task-bowling_events.json",
+            }),
             &pretty(&motion::events_dictionary()),
         )?;
         if let Some(plan) = &self.study.plan().staircase {
@@ -118,7 +121,11 @@ impl<'a> Tables<'a> {
         for run in &record.runs {
             let events = motion::events(run).tsv();
             if !with_motion {
-                let name = format!("beh/{stem}_task-bowling_run-{}_events.tsv", run.number);
+                let name = format!(
+                    "beh/{stem}_task-{}_run-{}_events.tsv",
+                    run.task.name(),
+                    run.number
+                );
                 self.put(&session.join(name), &events)?;
                 continue;
             }
@@ -195,6 +202,10 @@ impl<'a> Tables<'a> {
 
     fn readme(&self, sessions: usize) -> String {
         let plan = self.study.plan();
+        let runs = match plan.staircase {
+            Some(_) => "one run for all pairs",
+            None => "one run for each game",
+        };
         let what = if plan.staircase.is_some() {
             "Each participant compared pairs of throws that differ in one parameter of how objects collide, and\n\
              said whether they felt the same; what they came to is in phenotype/thresholds.tsv, the pairs in sub-*/ses-*/beh."
@@ -210,7 +221,7 @@ impl<'a> Tables<'a> {
              - participants.tsv: a row for each participant; what was asked before the games.\n\
              - phenotype/presence.tsv: a row for each session; what was asked between and after the games.\n\
              - sub-*/sub-*_sessions.tsv: what each session was recorded with.\n\
-             - sub-*/ses-*/motion: head and hand at the rate of the display, and what happened; one run for each game.\n\
+             - sub-*/ses-*/motion: head and hand at the rate of the display, and what happened; {runs}.\n\
              - sourcedata: the journals that all tables were made from.\n\n\
              Column names are explained in the .json file beside each table or at the top of the dataset. Missing values are `n/a`. World\n\
              frame: +x to the bowler's right, +y up, the lane along -z, origin at the middle of the foul line; metres, seconds, unit\n\
@@ -233,7 +244,8 @@ fn system(record: &SessionRecord) -> &'static str {
 
 fn suffix(record: &SessionRecord, run: &Run) -> String {
     format!(
-        "task-bowling_tracksys-{}_run-{}",
+        "task-{}_tracksys-{}_run-{}",
+        run.task.name(),
         system(record),
         run.number
     )

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde_json::{Value, json};
 
 use super::{Column, Table, number, optional};
-use crate::record::{MotionRow, Run, SessionRecord, TrialType};
+use crate::record::{MotionRow, Run, SessionRecord, Task, TrialType};
 
 /// The world frame, in which poses are given.
 const FRAME: &str = "world";
@@ -115,9 +115,13 @@ pub(super) fn motion_dictionary(record: &SessionRecord, run: &Run, system: &str)
             text.to_owned()
         }
     };
+    let part = match run.task {
+        Task::Game { number, button } => format!("game {number} of 2, {button} button"),
+        Task::Pairs => "pairs of throws".to_owned(),
+    };
     json!({
-        "TaskName": "bowling",
-        "TaskDescription": format!("ten-pin bowling in a virtual room, game {} of 2, {} button", run.game, run.button),
+        "TaskName": run.task.name(),
+        "TaskDescription": format!("ten-pin bowling in a virtual room, {part}"),
         "SamplingFrequency": run.sampling_hz,
         "SamplingFrequencyEffective": (effective * 1e6).round() / 1e6,
         "RecordingDuration": (duration * 1e6).round() / 1e6,
@@ -144,8 +148,14 @@ fn event_columns() -> Vec<Column> {
         Column::new("trial_type", "what happened").with_levels(types),
         Column::new("button", "label of the condition")
             .with_levels([("Red", "the red button"), ("Blue", "the blue button")]),
-        Column::new("frame", "bowling frame, 1 to 10"),
-        Column::new("ball", "ball in the frame"),
+        Column::new(
+            "frame",
+            "bowling frame, 1 to 10; where pairs of throws are compared, the pair",
+        ),
+        Column::new(
+            "ball",
+            "ball in the frame; where pairs of throws are compared, throw of the pair",
+        ),
         Column::new("pins_down", "pins knocked down by this ball"),
         Column::new("object", "what came towards the head"),
         Column::new(

@@ -5,6 +5,13 @@ use crate::protocol::AnsweredIn;
 use crate::record::{Pairs, SessionRecord};
 use crate::staircase::{Reply, StaircasePlan};
 
+/// A value of the parameter, or a difference: six decimals, and more where the whole range is less than a tenth.
+fn value(value: f64, plan: &StaircasePlan) -> String {
+    let size = libm::log10((plan.furthest - plan.standard).abs());
+    let more = (-libm::floor(size) - 1.0).clamp(0.0, 300.0) as usize;
+    format!("{value:.*}", 6 + more)
+}
+
 /// A row for each pair.
 pub(super) fn compared(pairs: &Pairs, plan: &StaircasePlan) -> Table {
     let mut table = Table::new(vec![
@@ -30,9 +37,9 @@ pub(super) fn compared(pairs: &Pairs, plan: &StaircasePlan) -> Table {
         let trial = &compared.trial;
         table.push(vec![
             trial.number.to_string(),
-            number(trial.first),
-            number(trial.second),
-            number((trial.first - trial.second).abs()),
+            value(trial.first, plan),
+            value(trial.second, plan),
+            value((trial.first - trial.second).abs(), plan),
             match compared.reply {
                 Reply::Same => "same",
                 Reply::Different => "different",
@@ -74,14 +81,36 @@ pub(super) fn thresholds(records: &[SessionRecord], plan: &StaircasePlan) -> Tab
             record.participant.to_string(),
             format!("ses-{:02}", record.session),
             plan.key.clone(),
-            number(plan.standard),
+            value(plan.standard, plan),
             pairs.compared.len().to_string(),
-            optional(estimate, |estimate| number(estimate.threshold)),
-            optional(estimate, |estimate| number(estimate.interval[0])),
-            optional(estimate, |estimate| number(estimate.interval[1])),
+            optional(estimate, |estimate| value(estimate.threshold, plan)),
+            optional(estimate, |estimate| value(estimate.interval[0], plan)),
+            optional(estimate, |estimate| value(estimate.interval[1], plan)),
             optional(estimate, |estimate| estimate.catches.to_string()),
             optional(estimate, |estimate| estimate.false_alarms.to_string()),
         ]);
     }
     table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::staircase::Rule;
+
+    #[test]
+    fn value_tells_the_differences_of_a_small_range() {
+        let plan = |standard: f64, furthest: f64| StaircasePlan {
+            key: "objects.elasticity".to_owned(),
+            standard,
+            furthest,
+            rule: Rule::Bayesian,
+            trials: 1,
+            catch_share: 0.0,
+        };
+        assert_eq!(value(0.4, &plan(1.0, 0.4)), "0.400000");
+        assert_eq!(value(40.0, &plan(0.0, 400.0)), "40.000000");
+        // A hundredth of the range, the smallest difference that is tried.
+        assert_eq!(value(2e-6, &plan(0.0, 2e-4)), "0.000002000");
+    }
 }

@@ -81,8 +81,10 @@ fn run(number: u32, button: Button) -> Run {
     });
     Run {
         number,
-        game: number as u8,
-        button,
+        task: Task::Game {
+            number: number as u8,
+            button,
+        },
         began: format!("2026-11-22T10:{:02}:00.000000Z", number * 10),
         sampling_hz: 90.0,
         motion: motion.collect(),
