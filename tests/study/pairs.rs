@@ -7,6 +7,7 @@ use std::sync::OnceLock;
 use bowling_app::journal::{self, Changes};
 use experiment::random::SplitMix64;
 use game::{Event, EventKind, Game};
+use serde_json::Value;
 
 use super::{begin, copy_folder, entries, files, go_on, journals, refusal, said, text};
 use crate::support::{bowling, fresh_folder};
@@ -202,6 +203,117 @@ fn each_throw_is_made_with_the_value_of_the_table() {
     assert!(thrown.iter().any(|value| *value != 1.0), "{thrown:?}");
 }
 
+/// There are no games whose order and buttons could be balanced.
+#[test]
+fn a_study_of_pairs_is_verified_by_what_it_compares() {
+    let verified = said(&["study", "verify", text(short_study())]);
+    assert!(
+        verified.contains("2 participants, 6 pairs of throws each, 20 % of them"),
+        "{verified}"
+    );
+    assert!(
+        verified.contains("objects.elasticity is 1 in one"),
+        "{verified}"
+    );
+    for word in ["Red", "Blue", "game", "level"] {
+        assert!(!verified.contains(word), "{verified}");
+    }
+}
+
+/// Head and hand are in one table from the first pair on, and the events have each throw of each pair once, within it.
+#[test]
+fn pairs_have_motion_and_events() {
+    let study = short_study();
+    let all = experiment::files::list(&study.join("data")).expect("readable");
+    let named = |end: &str| -> Vec<&PathBuf> {
+        let of = all.iter().filter(|path| text(path).ends_with(end));
+        of.collect()
+    };
+    let motion = named("_task-pairs_tracksys-script_run-1_motion.tsv");
+    let events = named("_task-pairs_tracksys-script_run-1_events.tsv");
+    assert_eq!((motion.len(), events.len()), (2, 2));
+    for (motion, events) in motion.into_iter().zip(events) {
+        let table = fs::read_to_string(motion).expect("a table");
+        let time = |line: &str| -> f64 {
+            let cell = line.split('\t').next().expect("a cell");
+            cell.parse().expect("a number")
+        };
+        let times: Vec<f64> = table.lines().map(time).collect();
+        assert_eq!(times[0], 0.0);
+        assert!(times.windows(2).all(|two| two[1] > two[0]));
+        let kinds = column(events, "trial_type").into_iter();
+        let (pairs, throws) = (column(events, "frame"), column(events, "ball"));
+        let (onset, duration) = (numbers(events, "onset"), column(events, "duration"));
+        let mut thrown = Vec::new();
+        for (row, kind) in kinds.enumerate().filter(|(_, kind)| kind == "ball_roll") {
+            let cell = |cells: &[String]| -> u32 { cells[row].parse().expect(&kind) };
+            thrown.push((cell(&pairs), cell(&throws)));
+            let rest = onset[row] + duration[row].parse::<f64>().expect("a number");
+            assert!(onset[row] > 0.0 && rest <= *times.last().expect("rows"));
+        }
+        let all: Vec<(u32, u32)> = (1..=6).flat_map(|pair| [(pair, 1), (pair, 2)]).collect();
+        assert_eq!(thrown, all);
+    }
+}
+
+/// What `analyse` says of pairs, against counts from the tables here.
+#[test]
+fn a_study_of_pairs_is_analysed() {
+    let study = short_study();
+    let out = fresh_folder("study-pairs-analysed");
+    let arguments = ["analyse", text(study), "--out", text(&out)];
+    let printed = said(&arguments);
+    let report = fs::read_to_string(out.join("report.json")).expect("a report");
+    let report: Value = serde_json::from_str(&report).expect("JSON");
+    let close = |found: &Value, expected: f64| {
+        let found = found.as_f64().expect("a number");
+        assert!((found - expected).abs() < 2e-6, "{found} {expected}");
+    };
+    assert_eq!(report["parameter"], "objects.elasticity");
+    let thresholds = study.join("data/phenotype/thresholds.tsv");
+    let ids = column(&thresholds, "participant_id");
+    let values = numbers(&thresholds, "threshold");
+    let (mut alarms, mut catches, mut logs) = (0, 0, 0.0);
+    for (row, id) in ids.iter().enumerate() {
+        let one = &report["participants"][row];
+        assert_eq!(
+            (&one["id"], &one["pairs"]),
+            (&id.as_str().into(), &6.into())
+        );
+        close(&one["rule"]["threshold"], values[row]);
+        close(&one["rule"]["low"], numbers(&thresholds, "low")[row]);
+        // The rule is the Bayesian one: the fit to its pairs is its own estimate.
+        close(&one["fitted"]["threshold"], values[row]);
+        let slope = one["fitted"]["slope"].as_f64().expect("a number");
+        assert!((1.0..=5.0).contains(&slope), "{slope}");
+        let pairs = pairs_of(study);
+        let pairs = pairs.iter().find(|path| text(path).contains(id.as_str()));
+        let pairs = pairs.expect("the participant's");
+        let replies = column(pairs, "reply").into_iter();
+        for (off, reply) in numbers(pairs, "difference").into_iter().zip(replies) {
+            catches += u32::from(off == 0.0);
+            alarms += u32::from(off == 0.0 && reply == "different");
+        }
+        logs += values[row].ln() / ids.len() as f64;
+        assert!(printed.contains(&format!("  {id}")), "{printed}");
+    }
+    let together = &report["together"];
+    assert_eq!(together["pairs"], 12);
+    assert_eq!(together["false_alarms"]["catches"], catches);
+    assert_eq!(together["false_alarms"]["alarms"], alarms);
+    close(&together["threshold"]["geometric_mean"], logs.exp());
+    let page = fs::read_to_string(out.join("report.html")).expect("a page");
+    assert_eq!(page.matches("<svg").count(), 2);
+    assert!(page.contains("false alarms") && page.contains("geometric mean"));
+    for figure in ["thresholds.svg", "shares.svg"] {
+        assert!(out.join(figure).is_file(), "{figure}");
+    }
+    let output = bowling(&[&arguments[..], &["--seed", "2"]].concat());
+    assert_eq!(output.status.code(), Some(2));
+    let refused = String::from_utf8_lossy(&output.stderr);
+    assert!(refused.contains("belong to studies of games"), "{refused}");
+}
+
 #[test]
 fn a_session_of_pairs_that_is_killed_goes_on_and_is_the_same_person() {
     let study = fresh_folder("study-pairs-killed").join("study");
@@ -281,5 +393,19 @@ fn what_cannot_be_compared_is_refused_in_a_sentence() {
         refused.contains("needs --parameter, --standard"),
         "{refused}"
     );
+    for (more, words) in [
+        (["--threshold", "0"], "has to be a number above 0"),
+        (["--threshold", "nan"], "has to be a number above 0"),
+        (
+            ["--training-in-the-scene", "--items-after-each-game"],
+            "belong to games",
+        ),
+    ] {
+        let asked = [&with("objects.elasticity")[..], &more].concat();
+        let output = bowling(&new(&asked));
+        assert_eq!(output.status.code(), Some(2), "{more:?}");
+        let refused = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert!(refused.contains(words), "{refused}");
+    }
     assert!(!study.exists(), "nothing is left behind");
 }

@@ -13,7 +13,10 @@ use plotters::prelude::*;
 use super::paper::papers_name;
 use crate::accuracy::figure::{COLOURS, failed, svg_of};
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// A figure: its name, what it shows, and its SVG.
+pub(super) type Figure = (&'static str, String, String);
 
 /// Height of a figure with values upwards [px], and its width.
 const UPRIGHT: (u32, u32) = (760, 340);
@@ -25,11 +28,11 @@ const ROW: u32 = 34;
 /// Beyond this many of the median interval's widths an interval is cut, with an arrow.
 const LONGEST: f64 = 4.0;
 
-/// Every figure that the analysis has: its name, what it shows, and its SVG.
+/// Every figure that the analysis has.
 ///
 /// # Errors
 /// When one cannot be drawn.
-pub fn figures(analysis: &Analysis) -> Result<Vec<(&'static str, String, String)>> {
+pub fn figures(analysis: &Analysis) -> Result<Vec<Figure>> {
     let mut figures = Vec::new();
     let conditions = analysis.answers();
     if !conditions.is_empty() {

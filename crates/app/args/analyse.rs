@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use experiment::analysis::model::{Model, PAPER};
+use experiment::analysis::model::Model;
 
 /// Arguments of `bowling analyse`.
 #[derive(Debug, Args)]
@@ -23,22 +23,18 @@ pub struct AnalyseArguments {
     /// The model: terms joined by +.
     ///
     /// A term is 1 (a constant), change (an indicator for each changed parameter), a column, a column:change (the
-    /// column where each parameter changes) or column:column (a product).
-    #[arg(long, value_name = "TERMS", default_value = PAPER)]
-    pub model: Model,
+    /// column where each parameter changes) or column:column (a product) [default: the paper's,
+    /// change + F + sick + vr + S:change + E:change].
+    #[arg(long, value_name = "TERMS")]
+    pub model: Option<Model>,
 
-    /// Re-allocations of the randomisation tests; where there are no more, all are done.
-    #[arg(long, value_name = "N", allow_negative_numbers = true, default_value_t = 10_000, value_parser = clap::value_parser!(u32).range(100..=10_000_000))]
-    pub randomisations: u32,
+    /// Re-allocations of the randomisation tests; where there are no more, all are done [default: 10000].
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(100..=10_000_000))]
+    pub randomisations: Option<u32>,
 
-    /// Seed of the re-allocations; the same seed gives the same report.
-    #[arg(
-        long,
-        value_name = "N",
-        allow_negative_numbers = true,
-        default_value_t = 1
-    )]
-    pub seed: u64,
+    /// Seed of the re-allocations; the same seed gives the same report [default: 1].
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub seed: Option<u64>,
 }
 
 /// Arguments of `bowling power`.

@@ -5,6 +5,7 @@
 
 pub mod behaviour;
 pub mod design;
+pub mod differences;
 pub mod exact;
 pub mod firth;
 pub mod fit;

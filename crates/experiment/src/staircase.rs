@@ -101,6 +101,36 @@ pub struct Estimate {
     pub catches: u32,
 }
 
+/// The function of known form that answers to pairs fit best, whatever rule chose the pairs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fitted {
+    /// The difference that is called different 70.7 % of the time, as a part of the range.
+    pub threshold: f64,
+    /// Ends of its 95 % interval.
+    pub interval: [f64; 2],
+    /// Exponent b of the Weibull function `1 - exp(-(d / a)^b)`, from 1, shallow, to 5, steep: nothing else is looked for.
+    pub slope: f64,
+    /// Ends of its 95 % interval.
+    pub slope_interval: [f64; 2],
+}
+
+/// Fits a Weibull function with false alarms to pairs: their differences as a part of the range, 0 in a catch trial, and whether they
+/// were called different. It is the Bayesian rule's own posterior, so that after this rule threshold and interval are the rule's.
+pub fn fit(answers: &[(f64, bool)]) -> Fitted {
+    let mut posterior = Posterior::new();
+    for (difference, is_different) in answers {
+        posterior.answered(*difference, *is_different);
+    }
+    let (threshold, interval) = posterior.estimate();
+    let (slope, slope_interval) = posterior.slope();
+    Fitted {
+        threshold,
+        interval,
+        slope,
+        slope_interval,
+    }
+}
+
 #[derive(Debug, Clone)]
 enum Chooser {
     UpDown(UpDown),

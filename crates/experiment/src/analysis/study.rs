@@ -26,6 +26,9 @@ pub enum AnalysisError {
     /// The model does not fit the table.
     #[error(transparent)]
     Design(#[from] DesignError),
+    /// The plan of a study cannot be used.
+    #[error("{0}")]
+    Study(String),
 }
 
 /// The analysis of a study.

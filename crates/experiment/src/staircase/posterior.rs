@@ -117,24 +117,32 @@ impl Posterior {
 
     /// Posterior mean of the target's logarithm, and its 2.5 % and 97.5 % quantiles.
     pub(super) fn estimate(&self) -> (f64, [f64; 2]) {
-        let mut targets: Vec<(f64, f64)> = self
-            .observers
-            .iter()
-            .zip(&self.weights)
-            .map(|(observer, weight)| (libm::log(observer.target()), *weight))
+        self.mean_and_interval(Observer::target)
+    }
+
+    /// The same of the slope, which lies between the ends of [`SLOPES`] whatever the answers.
+    pub(super) fn slope(&self) -> (f64, [f64; 2]) {
+        self.mean_and_interval(|observer| observer.slope)
+    }
+
+    /// The mean of a logarithm, and its quantiles, over the posterior.
+    fn mean_and_interval(&self, of: impl Fn(Observer) -> f64) -> (f64, [f64; 2]) {
+        let observers = self.observers.iter().zip(&self.weights);
+        let mut values: Vec<(f64, f64)> = observers
+            .map(|(observer, weight)| (libm::log(of(*observer)), *weight))
             .collect();
-        targets.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let mean = targets
+        values.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mean = values
             .iter()
-            .map(|(target, weight)| target * weight)
+            .map(|(value, weight)| value * weight)
             .sum::<f64>();
         let quantile = |share: f64| {
             let mut below = 0.0;
-            let found = targets.iter().find(|(_, weight)| {
+            let found = values.iter().find(|(_, weight)| {
                 below += weight;
                 below >= share
             });
-            libm::exp(found.or(targets.last()).map_or(0.0, |(target, _)| *target))
+            libm::exp(found.or(values.last()).map_or(0.0, |(value, _)| *value))
         };
         (libm::exp(mean), [quantile(0.025), quantile(0.975)])
     }
