@@ -34,7 +34,7 @@ use crate::pictures::{Painter, Wanted};
 use crate::play::{self, Progress};
 use crate::session::{Session, Setup};
 use crate::sound::Ears;
-use crate::study::attendant::Attendant;
+use crate::study::attendant::Attendance;
 use crate::words::Words;
 pub use answered::answered;
 use player::Player;
@@ -62,8 +62,11 @@ pub fn run(
     root: &Path,
     wanted: Wanted,
     (found, settings): (Found, HeadsetSettings),
-    attendant: Option<Attendant>,
+    attendance: Option<Attendance>,
 ) -> Result<()> {
+    let (attendant, events) = attendance
+        .map(|attendance| (attendance.attendant, attendance.events))
+        .unzip();
     let config = setup.conditions.lobby.clone();
     let stop = play::interruption()?;
     let words = Words::load(root, &config)?;
@@ -121,7 +124,13 @@ pub fn run(
         wanted,
     };
     let watched = Watch::new(Arc::clone(&shared), ended, attendant).begin(end.clone())?;
-    let outcome = mirror::stay(watched, Arc::clone(&shared), root, &config);
+    let outcome = mirror::stay(
+        watched,
+        Arc::clone(&shared),
+        root,
+        &config,
+        events.flatten(),
+    );
     last_word.wait();
     end.conclude(outcome)
 }

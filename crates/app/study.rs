@@ -1,6 +1,6 @@
 //! `bowling study`: an experiment from its plan to its tables.
 //!
-//! `seat` turns a slot of the plan into the settings of a session, `run` plays it, `attendant` answers or asks what is
+//! `seat` turns a slot of the plan into the settings of a session, `gate` asks for consent, `run` plays it, `attendant` answers or asks what is
 //! due, `experimenter` is what terminal and window say and understand, `tables` makes every table from the journals.
 
 mod approaches;
@@ -9,7 +9,9 @@ pub(crate) mod board;
 mod console;
 pub mod experimenter;
 pub(crate) mod folder;
+mod gate;
 mod manage;
+mod pane;
 mod record;
 mod run;
 pub mod seat;

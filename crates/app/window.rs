@@ -20,6 +20,7 @@ use winit::application::ApplicationHandler;
 use winit::dpi::LogicalSize;
 use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
+use winit::platform::run_on_demand::EventLoopExtRunOnDemand;
 use winit::window::{Window, WindowId};
 
 use crate::again::Again;
@@ -38,7 +39,7 @@ use crate::practice::Track;
 use crate::session::{Session, Setup};
 use crate::signs::SignStock;
 use crate::sound::Ears;
-use crate::study::attendant::Attendant;
+use crate::study::attendant::{Attendance, Attendant};
 use crate::words::Words;
 use aside::Aside;
 use cost::Meter;
@@ -63,9 +64,12 @@ pub fn run(
     root: &Path,
     wanted: Wanted,
     choice: Choice,
-    attendant: Option<Attendant>,
+    attendance: Option<Attendance>,
 ) -> Result<()> {
-    let events = EventLoop::new().map_err(|_| {
+    let (attendant, events) = attendance
+        .map(|attendance| (attendance.attendant, attendance.events))
+        .unzip();
+    let mut events = events.flatten().map_or_else(EventLoop::new, Ok).map_err(|_| {
         anyhow!(
             "no window can be opened: the display server does not answer; start from a desktop, or use --offscreen"
         )
@@ -81,8 +85,9 @@ pub fn run(
         stop: play::interruption()?,
         failure: None,
     };
+    // One that has run before must be told to begin anew, which `run_app` does not do.
     events
-        .run_app(&mut shell)
+        .run_app_on_demand(&mut shell)
         .context("the window system ended the session")?;
     let Shell {
         stage,

@@ -3,7 +3,7 @@
 use std::fs::{self, File};
 use std::io::Read;
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
+use std::process::{Command, ExitStatus, Stdio};
 
 use serde_json::Value;
 
@@ -22,8 +22,19 @@ struct Session {
 }
 
 impl Session {
+    /// One whose consent is typed in the terminal.
     fn begin(name: &str) -> Self {
         let folder = fresh_folder(name);
+        let ticks = folder.join("ticks");
+        fs::write(&ticks, "y\ny\ny\nn\n").expect("writable");
+        let typed = File::open(&ticks).expect("just written").into();
+        let session = Self::begin_in(folder, SCREEN, typed);
+        session.to_front(TITLE);
+        session
+    }
+
+    /// One that is about to ask for consent.
+    fn begin_in(folder: PathBuf, screen: [u32; 2], typed: Stdio) -> Self {
         let study = folder.join("study");
         let made = bowling(&[
             "study",
@@ -41,9 +52,7 @@ impl Session {
             "2099-12-31",
         ]);
         assert!(made.status.success());
-        let ticks = folder.join("ticks");
-        fs::write(&ticks, "y\ny\ny\nn\n").expect("writable");
-        let screen = Screen::open(SCREEN);
+        let screen = Screen::open(screen);
         let mut command = Command::new(env!("CARGO_BIN_EXE_bowling"));
         command
             .args(["study", "run", "--device", "desk"])
@@ -51,21 +60,19 @@ impl Session {
             .env("DISPLAY", screen.display())
             .env_remove("WAYLAND_DISPLAY")
             .current_dir(env!("CARGO_MANIFEST_DIR"))
-            .stdin(File::open(&ticks).expect("just written"))
+            .stdin(typed)
             .stdout(Stdio::piped())
             .stderr(Stdio::piped());
-        let session = Self {
+        Self {
             program: Process::start("bowling", &mut command),
             screen,
             study,
-        };
-        session.to_front();
-        session
+        }
     }
 
-    /// Brings the experimenter's window to the upper left corner, and the keys to it.
-    fn to_front(&self) {
-        let window = self.screen.act(&["search", "--sync", "--name", TITLE]);
+    /// Brings a window to the upper left corner, and the keys to it.
+    fn to_front(&self, title: &str) {
+        let window = self.screen.act(&["search", "--sync", "--name", title]);
         self.screen
             .act(&["windowmove", "--sync", &window, "0", "0"]);
         self.screen.act(&["windowraise", &window]);
@@ -93,8 +100,20 @@ impl Session {
         self.screen.act(&["type", "--delay", "15", words]);
     }
 
-    /// Waits for the end, and returns what was printed.
-    fn ended(mut self) -> String {
+    fn click(&self, [x, y]: [u32; 2]) {
+        let (x, y) = (x.to_string(), y.to_string());
+        self.screen.act(&["mousemove", &x, &y, "click", "1"]);
+    }
+
+    /// Waits for the end, which has to be a success, and returns what was printed.
+    fn ended(self) -> String {
+        let (status, said) = self.outcome();
+        assert!(status.success(), "{said}");
+        said
+    }
+
+    /// Waits for the end.
+    fn outcome(mut self) -> (ExitStatus, String) {
         let status = wait_for("the program to end", || self.program.ended());
         let mut said = String::new();
         let program = self.program.child();
@@ -103,8 +122,7 @@ impl Session {
         output.read_to_string(&mut said).expect("text");
         let errors = errors.as_mut().expect("piped");
         errors.read_to_string(&mut said).expect("text");
-        assert!(status.success(), "{said}");
-        said
+        (status, said)
     }
 }
 
@@ -168,4 +186,85 @@ fn escape_in_the_experimenters_window_stops() {
     assert_eq!(stopped["reason"], "");
     let said = session.ended();
     assert!(said.contains("Tables in"), "{said}");
+}
+
+const CONSENT: &str = "^Bowling: consent$";
+/// Room for all of the form's window, and where its first box is: its words are clicked.
+const LARGE: [u32; 2] = [700, 740];
+const TAKE_PART: [u32; 2] = [150, 466];
+
+/// Where the button that begins is once it may be pressed: its ends and its middle height.
+fn begin_button(screen: &Screen) -> Option<[u32; 3]> {
+    let picture = screen.shot();
+    let is_green = |pixel: &image::Rgb<u8>| {
+        let [r, g, b] = pixel.0.map(u32::from);
+        g > 190 && g > r + 60 && g > b + 30
+    };
+    let greens = picture.enumerate_pixels();
+    let greens: Vec<[u32; 2]> = greens
+        .filter(|(.., pixel)| is_green(pixel))
+        .map(|(x, y, _)| [x, y])
+        .collect();
+    let least = |axis: usize| greens.iter().map(|at| at[axis]).min();
+    let most = |axis: usize| greens.iter().map(|at| at[axis]).max();
+    let middle = (least(1)? + most(1)?) / 2;
+    (greens.len() > 1500).then_some([least(0)?, most(0)?, middle])
+}
+
+/// Nobody types: the form is ticked in its window, and no session begins without the tick that it needs.
+#[test]
+fn consent_is_ticked_in_a_window() {
+    let folder = fresh_folder("window-consent");
+    let session = Session::begin_in(folder, LARGE, Stdio::null());
+    session.to_front(CONSENT);
+    let screen = &session.screen;
+    wait_for("the form", || (colours(&screen.shot()) > 15).then_some(()));
+    assert_eq!(begin_button(screen), None, "nothing is ticked yet");
+    session.click(TAKE_PART);
+    let [left, right, height] = wait_for("the tick", || begin_button(screen));
+    let begin = [(left + right) / 2, height];
+    let picture = screen.shot();
+    let kept = session.study.with_file_name("consent.png");
+    picture.save(kept).expect("the picture can be kept");
+    // The tick taken back, the button begins nothing.
+    session.click(TAKE_PART);
+    wait_for("no tick", || begin_button(screen).is_none().then_some(()));
+    session.click(begin);
+    session.click(TAKE_PART);
+    wait_for("the tick", || begin_button(screen));
+    assert!(!session.study.join("data/sourcedata").exists());
+    assert!(!session.study.join("plan/assignments.csv").exists());
+    session.click(begin);
+    session.to_front(TITLE);
+    wait_for("the Stop button", || (reds(screen) > 3000).then_some(()));
+    let consent = wait_for("the consent", || session.notes("consent").pop());
+    let form = fs::read(session.study.join("plan/consent.md")).expect("the form");
+    assert_eq!(consent["form_sha256"], experiment::digest::sha256(&form));
+    assert_eq!(consent["form_version"], "template-1");
+    let ticks = serde_json::json!({
+        "take_part": true, "share_data": false, "share_motion": false, "contact": false
+    });
+    assert_eq!(consent["ticks"], ticks);
+    screen.act(&["key", "Escape"]);
+    let said = session.ended();
+    assert!(said.contains("Tables in"), "{said}");
+}
+
+#[test]
+fn a_form_that_is_left_begins_no_session() {
+    let folder = fresh_folder("window-consent-left");
+    let session = Session::begin_in(folder, LARGE, Stdio::null());
+    session.to_front(CONSENT);
+    let screen = &session.screen;
+    wait_for("the form", || (colours(&screen.shot()) > 15).then_some(()));
+    session.click(TAKE_PART);
+    let [_, right, height] = wait_for("the tick", || begin_button(screen));
+    // The button beside it.
+    session.click([right + 40, height]);
+    let study = session.study.clone();
+    let (status, said) = session.outcome();
+    assert_eq!(status.code(), Some(1), "{said}");
+    assert!(said.contains("nothing has been recorded"), "{said}");
+    assert!(!study.join("data/sourcedata").exists());
+    assert!(!study.join("plan/consents.csv").exists());
 }

@@ -18,6 +18,7 @@ use winit::dpi::LogicalSize;
 use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::keyboard::{KeyCode, PhysicalKey};
+use winit::platform::run_on_demand::EventLoopExtRunOnDemand;
 use winit::window::{Window, WindowId};
 
 use super::Shared;
@@ -32,13 +33,20 @@ use crate::words::Words;
 /// Time between two pictures: enough to follow, little beside the headset's.
 const PERIOD: Duration = Duration::from_millis(33);
 
-/// Stays until the headset's thread has ended; with a window where there is a display.
+/// Stays until the headset's thread has ended; with a window where there is a display. `events` is the window system, where a window was
+/// there before.
 ///
 /// # Errors
 /// What ended the thread.
-pub fn stay(watched: Watched, shared: Arc<Shared>, root: &Path, config: &Config) -> Result<()> {
-    let display = crate::choose::display();
-    let Some(events) = display.ok().and_then(|()| EventLoop::new().ok()) else {
+pub fn stay(
+    watched: Watched,
+    shared: Arc<Shared>,
+    root: &Path,
+    config: &Config,
+    events: Option<EventLoop<()>>,
+) -> Result<()> {
+    let display = || crate::choose::display().ok();
+    let Some(mut events) = events.or_else(|| display().and_then(|()| EventLoop::new().ok())) else {
         return watched.wait();
     };
     let mut mirror = Mirror {
@@ -52,7 +60,7 @@ pub fn stay(watched: Watched, shared: Arc<Shared>, root: &Path, config: &Config)
         outcome: None,
     };
     // A fault of the window system or its driver ends the mirror, and must not end the participant's game.
-    let ended = catch_unwind(AssertUnwindSafe(|| events.run_app(&mut mirror)));
+    let ended = catch_unwind(AssertUnwindSafe(|| events.run_app_on_demand(&mut mirror)));
     match mirror.outcome {
         Some(outcome) => outcome,
         None => {

@@ -5,12 +5,22 @@ use experiment::participant::Simulated;
 use experiment::protocol::{AnsweredIn, Place};
 use experiment::random::SplitMix64;
 use experiment::staircase::Observer;
+use winit::event_loop::EventLoop;
 
 use super::console::Console;
 use crate::session::Session;
 
 /// How long a simulated participant takes to say whether two throws were the same [s].
 const COMPARING_S: f64 = 1.5;
+
+/// Who attends, and the windows that show what is attended to.
+#[derive(Debug)]
+pub struct Attendance {
+    /// Who answers.
+    pub attendant: Attendant,
+    /// The window system, where a window of the study was there before the session's: a program has it once.
+    pub events: Option<EventLoop<()>>,
+}
 
 /// Who answers, or asks the participant for answers.
 #[derive(Debug)]

@@ -1,40 +1,34 @@
 //! The experimenter's board in a window: what is on and what is next, the question that is asked, tracking and pictures, a
 //! line to type in, and Stop. What it says and does is [`super::experimenter`]'s, as in the terminal.
-//!
-//! It is painted to an image, as all text is, and only when something on it has changed.
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use experiment::protocol::Standing;
 use renderer::egui::{self, Color32, RichText};
-use renderer::{Gpu, RgbaImage, TextPainter};
+use renderer::{Gpu, RgbaImage};
 use winit::event::WindowEvent;
 use winit::window::Window;
 
 use super::experimenter::{self, HELP, Told};
+use super::pane::Pane;
 use crate::session::Session;
 
 /// Width of the board [points].
 pub const WIDTH: f32 = 380.0;
 
-const GROUND: Color32 = Color32::from_rgb(24, 26, 32);
-const LETTERS: Color32 = Color32::from_rgb(240, 236, 228);
-const FAINT: Color32 = Color32::from_rgb(130, 130, 130);
-const ON: Color32 = Color32::from_rgb(120, 210, 160);
+pub(super) const GROUND: Color32 = Color32::from_rgb(24, 26, 32);
+pub(super) const LETTERS: Color32 = Color32::from_rgb(240, 236, 228);
+pub(super) const FAINT: Color32 = Color32::from_rgb(130, 130, 130);
+pub(super) const ON: Color32 = Color32::from_rgb(120, 210, 160);
 const STOP: Color32 = Color32::from_rgb(150, 44, 40);
-const WARNING: Color32 = Color32::from_rgb(255, 180, 80);
+pub(super) const WARNING: Color32 = Color32::from_rgb(255, 180, 80);
 /// Height of the Stop button, which nobody should have to aim at [points].
 const STOP_HEIGHT: f32 = 44.0;
-/// Pictures that a user interface takes to come to rest after an event.
-const PICTURES_AFTER_EVENT: u8 = 3;
 
 /// The board.
 pub struct Board {
-    painter: TextPainter,
-    events: egui_winit::State,
+    pane: Pane,
     content: Content,
-    painted: Option<(Told, [u32; 2])>,
-    /// Pictures that are still due although nothing new was told.
-    due: u8,
+    told: Option<Told>,
 }
 
 /// What is on the board besides what is told.
@@ -51,33 +45,20 @@ struct Content {
 impl Board {
     /// A board in `window`, painted with `gpu`.
     pub fn new(gpu: &Gpu, window: &Window) -> Self {
-        let painter = TextPainter::new(gpu);
-        let events = egui_winit::State::new(
-            painter.context().clone(),
-            egui::ViewportId::ROOT,
-            window,
-            Some(window.scale_factor() as f32),
-            None,
-            None,
-        );
         let content = Content {
             reply: HELP.to_owned(),
             ..Content::default()
         };
         Self {
-            painter,
-            events,
+            pane: Pane::new(gpu, window),
             content,
-            painted: None,
-            due: PICTURES_AFTER_EVENT,
+            told: None,
         }
     }
 
     /// Hears what happens in the window.
     pub fn hear(&mut self, window: &Window, event: &WindowEvent) {
-        if self.events.on_window_event(window, event).repaint {
-            self.due = PICTURES_AFTER_EVENT;
-        }
+        self.pane.hear(window, event);
     }
 
     /// Does what was typed and clicked.
@@ -87,7 +68,7 @@ impl Board {
     pub fn act(&mut self, session: &mut Session) -> Result<()> {
         for line in std::mem::take(&mut self.content.sent) {
             self.content.reply = experimenter::take(&line, session)?.unwrap_or_default();
-            self.due = PICTURES_AFTER_EVENT;
+            self.pane.stir();
         }
         Ok(())
     }
@@ -97,38 +78,17 @@ impl Board {
     /// # Errors
     /// When the device does not paint it.
     pub fn image(&mut self, window: &Window, told: &Told) -> Result<Option<RgbaImage>> {
-        let size = window.inner_size();
-        let size = [size.width.max(1), size.height.max(1)];
-        let state = Some((told.clone(), size));
-        if self.painted == state && self.due == 0 {
-            return Ok(None);
+        if self.told.as_ref() != Some(told) {
+            self.told = Some(told.clone());
+            self.pane.renew();
         }
-        self.painted = state;
-        self.due = self.due.saturating_sub(1);
-        let mut input = self.events.take_egui_input(window);
-        let is_click =
-            |event: &egui::Event| matches!(event, egui::Event::PointerButton { pressed: true, .. });
-        // A click takes the keys from the line, and in one picture with it what was typed before would be lost.
-        if let Some(at @ 1..) = input.events.iter().position(is_click) {
-            let clicked = input.events.split_off(at);
-            self.pass(input.clone(), size, told)?;
-            input.events = clicked;
-        }
-        let image = self.pass(input, size, told)?;
+        let content = &mut self.content;
+        let image = self.pane.image(window, |ui| show(ui, told, content))?;
         // A line that was sent is answered in the next picture.
         if !self.content.sent.is_empty() {
-            self.due = PICTURES_AFTER_EVENT;
+            self.pane.stir();
         }
-        Ok(Some(image))
-    }
-
-    /// The image after what the window heard.
-    fn pass(&mut self, input: egui::RawInput, size: [u32; 2], told: &Told) -> Result<RgbaImage> {
-        let content = &mut self.content;
-        let image = self.painter.interact(input, size[0], size[1], |ui| {
-            show(ui, told, content);
-        });
-        image.context("cannot paint the experimenter's board")
+        Ok(image)
     }
 }
 

@@ -3,7 +3,8 @@
 //! Lines are read by a thread of their own, so that no frame waits for a keyboard.
 
 use std::io::BufRead;
-use std::sync::mpsc::{Receiver, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::time::Duration;
 
 use anyhow::{Context, Result};
 
@@ -26,7 +27,7 @@ impl Console {
     ///
     /// # Errors
     /// When the system has no thread left.
-    pub fn open() -> Result<Self> {
+    pub fn listen() -> Result<Self> {
         let (sender, lines) = channel();
         std::thread::Builder::new()
             .name("console".to_owned())
@@ -40,12 +41,24 @@ impl Console {
                 }
             })
             .context("cannot listen to the terminal")?;
-        println!("{HELP}");
         Ok(Self {
             lines,
             said: String::new(),
             voice: Voice::new()?,
         })
+    }
+
+    /// Says what can be typed while a session runs.
+    pub fn introduce(&self) {
+        println!("{HELP}");
+    }
+
+    /// The next line that was typed, waiting for it at most so long.
+    ///
+    /// # Errors
+    /// When nobody types any more, or not yet.
+    pub fn line(&self, wait: Duration) -> Result<String, RecvTimeoutError> {
+        self.lines.recv_timeout(wait)
     }
 
     /// Says what is due, once, and takes the lines that were typed.

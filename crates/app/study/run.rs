@@ -1,20 +1,21 @@
 //! `bowling study run` and `resume`: a participant's session, with whatever device there is.
 
-use std::io::{BufRead, Write};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, Result, bail};
-use experiment::consent::{Consent, TICKS, Ticks};
+use experiment::consent::{Consent, Ticks};
 use experiment::participant::{Model, Simulated};
 use experiment::protocol::Note;
 use experiment::random::SplitMix64;
 use experiment::staircase::Observer;
 use experiment::study::{Lock, ParticipantId, Study};
+use winit::event_loop::EventLoop;
 
-use super::attendant::Attendant;
+use super::attendant::{Attendance, Attendant};
 use super::console::Console;
 use super::folder;
+use super::gate;
 use super::seat::{self, Guest};
 use super::{entropy, tables, utc_now};
 use crate::args::{DeviceChoice, ResumeArguments, RunArguments};
@@ -37,15 +38,16 @@ pub fn run(arguments: &RunArguments, root: &Path) -> Result<()> {
         "new" => None,
         id => Some(not_begun(&study, id)?),
     };
-    let ticks = if is_script(choice) {
-        ALL_TICKS
+    let (consent, attendance) = if is_script(choice) {
+        let today = utc_now();
+        let consent = simulated_consent(&study, today.get(..10).unwrap_or_default())?;
+        (consent, None)
     } else {
-        ask_ticks(&study)?
+        let console = Console::listen()?;
+        let (consent, events) = gate::pass(&study, &console)?;
+        (consent, Some(attended(console, events)))
     };
     let now = utc_now();
-    let consent = study
-        .consent_form()
-        .agree(ticks, now.get(..10).unwrap_or_default())?;
     let participant = match known {
         Some(participant) => participant,
         None => study.admit(&lock, entropy())?.participant,
@@ -54,7 +56,15 @@ pub fn run(arguments: &RunArguments, root: &Path) -> Result<()> {
     println!("Participant {participant}.");
     let notes = vec![Note::Consent(consent), clock(now, 0.0)];
     let guest = guest(&study, &participant, choice, notes)?;
-    sit(&study, &lock, guest, choice, root)
+    sit(&study, &lock, guest, choice, attendance, root)
+}
+
+/// The experimenter at the terminal, and the window system where a window was opened already.
+fn attended(console: Console, events: Option<EventLoop<()>>) -> Attendance {
+    Attendance {
+        attendant: Attendant::Console(Box::new(console)),
+        events,
+    }
 }
 
 /// Takes up a session that was broken off.
@@ -88,7 +98,12 @@ pub fn resume(arguments: &ResumeArguments, root: &Path) -> Result<()> {
     let notes = vec![clock(utc_now(), 0.0)];
     let mut guest = guest(&study, &participant, choice, notes)?;
     guest.before = Some((continues, story));
-    sit(&study, &lock, guest, choice, root)
+    let attendance = if is_script(choice) {
+        None
+    } else {
+        Some(attended(Console::listen()?, None))
+    };
+    sit(&study, &lock, guest, choice, attendance, root)
 }
 
 const ALL_TICKS: Ticks = Ticks {
@@ -152,28 +167,37 @@ pub fn seed(study: &Study, slot: u32) -> u64 {
     SplitMix64::for_index(study.plan().seed, u64::from(slot)).next_u64()
 }
 
-/// The session, from the first frame to the tables.
-fn sit(study: &Study, lock: &Lock, guest: Guest, choice: Choice, root: &Path) -> Result<()> {
+/// The session, from the first frame to the tables; without anybody attending a simulated participant answers.
+fn sit(
+    study: &Study,
+    lock: &Lock,
+    guest: Guest,
+    choice: Choice,
+    attendance: Option<Attendance>,
+    root: &Path,
+) -> Result<()> {
     let (slot, seed) = (guest.slot, guest.seed);
     let setup = seat::setup(study, lock, guest, root)?;
-    let attendant = if is_script(choice) {
-        simulated(study, slot, seed, None)
-    } else {
-        Attendant::Console(Box::new(Console::open()?))
-    };
+    let attendance = attendance.unwrap_or_else(|| Attendance {
+        attendant: simulated(study, slot, seed, None),
+        events: None,
+    });
+    if let Attendant::Console(console) = &attendance.attendant {
+        console.introduce();
+    }
     let wanted = Wanted { video: false };
     match choice {
         Choice::ScriptOffscreen => {
             let stop = play::interruption()?;
-            let session = bowl(setup, attendant, &stop)?;
+            let session = bowl(setup, attendance.attendant, &stop)?;
             session.finish(None, wanted, &mut |_| ())?;
         }
         Choice::Headset => {
             let headset = (choose::find()?, headset::asking_for(None));
-            headset::run(setup, root, wanted, headset, Some(attendant))?;
+            headset::run(setup, root, wanted, headset, Some(attendance))?;
         }
         Choice::DeskWindow | Choice::ScriptWindow => {
-            window::run(setup, root, wanted, choice, Some(attendant))?;
+            window::run(setup, root, wanted, choice, Some(attendance))?;
         }
     }
     tables::write(study, lock)?;
@@ -236,44 +260,6 @@ pub fn bowl(setup: Setup, mut attendant: Attendant, stop: &AtomicBool) -> Result
         }
     }
     Ok(session)
-}
-
-/// Asks what the participant has ticked on the form.
-fn ask_ticks(study: &Study) -> Result<Ticks> {
-    let form = study.consent_form();
-    println!(
-        "Consent form {} (SHA-256 {}), in {}.\nThe participant has read it. What is ticked?",
-        form.version,
-        &form.sha256[..12],
-        study.plan_folder().join("consent.md").display()
-    );
-    let mut answers = [false; TICKS.len()];
-    for (name, answer) in TICKS.iter().zip(&mut answers) {
-        *answer = ask_yes(&name.replace('_', " "))?;
-    }
-    let [take_part, share_data, share_motion, contact] = answers;
-    Ok(Ticks {
-        take_part,
-        share_data,
-        share_motion,
-        contact,
-    })
-}
-
-fn ask_yes(what: &str) -> Result<bool> {
-    loop {
-        print!("  {what} [y/n] ");
-        std::io::stdout().flush()?;
-        let mut line = String::new();
-        if std::io::stdin().lock().read_line(&mut line)? == 0 {
-            bail!("the terminal is closed, so that nobody can say what was ticked");
-        }
-        match line.trim().to_lowercase().as_str() {
-            "y" | "yes" => return Ok(true),
-            "n" | "no" => return Ok(false),
-            _ => {}
-        }
-    }
 }
 
 /// What a simulated participant agrees to.

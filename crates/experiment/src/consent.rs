@@ -124,6 +124,17 @@ impl ConsentForm {
         }
     }
 
+    /// The words beside one of [`TICKS`]: of the line `- [ ] words (`name`)`; `None` where the form has no such line.
+    pub fn tick(&self, name: &str) -> Option<&str> {
+        let end = format!("(`{name}`)");
+        let lines = self
+            .text
+            .lines()
+            .filter_map(|line| line.strip_prefix("- [ ]"));
+        let words = lines.filter_map(|line| line.trim().strip_suffix(end.as_str()));
+        words.map(str::trim).next()
+    }
+
     /// Names of the fields that are still empty.
     pub fn unfilled(&self) -> Vec<String> {
         let mut names: Vec<String> = Vec::new();
@@ -239,8 +250,11 @@ mod tests {
             assert!(SHIPPED.contains(needed), "{needed}");
         }
         for tick in TICKS {
-            assert!(SHIPPED.contains(&format!("(`{tick}`)")), "{tick}");
+            let words = form.tick(tick).expect(tick);
+            assert!(words.ends_with('.') && !words.contains('`'), "{words}");
         }
+        assert!(form.tick("share_data").unwrap().starts_with("My game data"));
+        assert_eq!(form.tick("share"), None);
     }
 
     #[test]
@@ -259,6 +273,7 @@ mod tests {
         assert!(refusal(motion, "2026-11-22").contains("motion cannot be shared"));
         for date in [
             "2026-02-29",
+            "2100-02-29",
             "2026-13-01",
             "22.11.2026",
             "2026-1-1",
