@@ -329,7 +329,13 @@ mod tests {
         protocol
             .happen(Happening::GameStarted(Button::Red))
             .unwrap();
+        assert_eq!(
+            protocol.locked(),
+            [false, false],
+            "a game may be begun anew"
+        );
         protocol.happen(Happening::GameOver).unwrap();
+        assert_eq!(protocol.locked(), [true, true], "a form is filled in");
         protocol.happen(Happening::FormDone).unwrap();
         // Whatever was first: the other one is due now.
         assert_eq!(protocol.due(), Some(Button::Blue));

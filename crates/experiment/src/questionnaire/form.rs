@@ -333,6 +333,9 @@ mod tests {
         form.act(7.0, Act::Back).unwrap();
         assert_eq!(shown(&form), "comments");
         assert_eq!(form.answers().get("noticed_what"), None);
+        form.act(7.5, Act::Back).unwrap();
+        assert_eq!(shown(&form), "noticed", "what is not due is passed over");
+        form.act(7.6, Act::Skip).unwrap();
         let again = Form::new(&shipped(), Stage::After, true)
             .replay(form.log())
             .unwrap();
