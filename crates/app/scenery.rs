@@ -153,6 +153,8 @@ pub enum Surface {
     Cases,
     /// The screens of the neighbouring lanes, on which nobody plays.
     IdleScreens,
+    /// Tubes of light along the side walls.
+    Neon,
     /// The screen over the own lane, with both score sheets; its texture fills it once.
     Scoreboard,
 }

@@ -16,6 +16,11 @@ const SCREEN_LEAN: f32 = 0.17;
 /// How far before the screen lies what covers it [m].
 const COVER: f32 = 0.004;
 
+/// The tubes on the side walls: how thick, how far from the wall, and their lower edge [m].
+const NEON_THICK: f32 = 0.035;
+const NEON_FROM_WALL: f32 = 0.02;
+const NEON_HEIGHT: f32 = 2.05;
+
 /// Depth of the rack of house balls [m], and its tiers [m].
 const SHELF_DEPTH: f32 = 0.26;
 const TIERS: [f32; 3] = [0.35, 0.7, 1.05];
@@ -55,9 +60,22 @@ pub(super) fn meshes(plan: &Plan) -> Vec<(Surface, Mesh)> {
         (Surface::Seats, seats),
         (Surface::Metal, metal),
         (Surface::Cases, cases),
+        (Surface::Neon, neon(plan)),
         (Surface::IdleScreens, idle),
         (Surface::Scoreboard, own),
     ]
+}
+
+/// A tube of light along each side wall, which leads the eye to the pins.
+fn neon(plan: &Plan) -> Mesh {
+    let mut tube = Mesh::default();
+    let outer = plan.half_room - NEON_FROM_WALL;
+    block(
+        &mut tube,
+        Vec3::new(outer - NEON_THICK, NEON_HEIGHT, plan.masking),
+        Vec3::new(outer, NEON_HEIGHT + NEON_THICK, plan.room_end),
+    );
+    both_sides(&tube)
 }
 
 fn screen_place(middle: f32, plan: &Plan) -> Affine3A {

@@ -183,8 +183,9 @@ impl Looks {
             },
             Surface::Markings => plain([0.035, 0.018, 0.012], 0.4),
             Surface::FoulLines => plain([0.02, 0.02, 0.02], 0.5),
-            Surface::Gutters => plain([0.055, 0.06, 0.07], 0.38),
-            Surface::Capping => plain([0.10, 0.085, 0.085], 0.55),
+            Surface::Gutters => plain([0.075, 0.08, 0.09], 0.38),
+            // Dark wood between the gutters, which are of one grey with nothing but their shade to tell them apart.
+            Surface::Capping => plain([0.11, 0.055, 0.03], 0.5),
             Surface::Pit => mirrored(matte([0.025, 0.025, 0.03])),
             Surface::Kickbacks => mirrored(KICKBACK.material()),
             Surface::Masking => mirrored(self.masking()),
@@ -205,11 +206,23 @@ impl Looks {
             Surface::Seats => matte([0.42, 0.05, 0.06]),
             Surface::Metal => METAL.material(),
             Surface::Cases => mirrored(plain([0.02, 0.02, 0.022], 0.4)),
-            Surface::IdleScreens => mirrored(Material::unlit([0.02, 0.05, 0.14])),
+            Surface::IdleScreens => mirrored(self.idle_screen()),
+            Surface::Neon => mirrored(Material::unlit([0.85, 0.10, 0.55])),
             Surface::Scoreboard => mirrored(Material {
                 texture: self.board,
                 ..Material::unlit([1.0; 3])
             }),
+        }
+    }
+
+    /// Where nobody plays, the screen shows the picture of the panel over the pins, faintly.
+    fn idle_screen(&self) -> Material {
+        match self.masking {
+            Some(texture) => Material {
+                texture: Some(texture),
+                ..Material::unlit([0.22, 0.24, 0.30])
+            },
+            None => Material::unlit([0.02, 0.05, 0.14]),
         }
     }
 
