@@ -14,6 +14,7 @@ use bowling_app::again::Again;
 use bowling_app::convert::{self, Stock};
 use bowling_app::devices::Device;
 use bowling_app::devices::script::{Script, Velocities};
+use bowling_app::hints::Grip;
 use bowling_app::lettering::{LastWord, Scribe};
 use bowling_app::signs::SignStock;
 use bowling_app::words::Words;
@@ -177,9 +178,9 @@ impl Alley {
         self.stock
             .show_again(moment)
             .expect("it is drawn in every session");
-        let hand = convert::HandShape::of(&self.game);
+        let hand = convert::HandLook::of(&self.game);
         let mut scene = convert::scene(visible.iter(), &self.stock, hand);
-        let texts = labels::signs(&self.game, &self.words);
+        let texts = labels::signs(&self.game, Grip::Trigger, &self.words);
         let signs = self.signs.instances(&texts, &mut self.renderer);
         scene
             .instances

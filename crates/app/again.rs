@@ -39,7 +39,7 @@ impl Again {
             match event.kind {
                 EventKind::Released(_) => *self = Self::of_throw(),
                 EventKind::FirstHit { .. } => self.first_hit = Some(now),
-                EventKind::Rolled { .. } if self.is_thrown => self.begin(now),
+                EventKind::Settled { .. } if self.is_thrown => self.begin(now),
                 _ => {}
             }
         }

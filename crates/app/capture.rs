@@ -132,7 +132,7 @@ impl Shots {
             time: game.time(),
             head: game.head_pose_world(),
             moving,
-            hand: convert::HandShape::of(game),
+            hand: convert::HandLook::of(game),
             scores: std::sync::Arc::new(convert::Scores::of(game)),
         });
     }

@@ -16,16 +16,16 @@ use renderer::{Instance, MAX_OCCLUDERS, Material, Occluder, Scene, Vignette};
 pub use board::Scores;
 pub use eyes::{bird, eyes, spectator, spectator_eyes};
 pub use hand::shrunk_hand;
-pub use shape::HandShape;
+pub use shape::{HandLook, HandShape};
 pub use stock::{Stock, settings};
 
 use stock::box_material;
 
-/// The scene of these things, with the hand in its shape.
+/// The scene of these things, with the hand as it looks.
 pub fn scene<'a>(
     visible: impl IntoIterator<Item = &'a Visible>,
     stock: &Stock,
-    hand: HandShape,
+    hand: HandLook,
 ) -> Scene {
     let visible: Vec<Visible> = visible.into_iter().copied().collect();
     let mut instances = stock.scenery.clone();
@@ -259,7 +259,7 @@ pub(crate) mod tests {
             visible(Model::Lane, DVec3::ONE),
         ];
         let last = |shape| {
-            let scene = scene(&things, &stock, shape);
+            let scene = scene(&things, &stock, HandLook::right(shape));
             assert_eq!(scene.instances.len(), stock.scenery.len() + 1);
             *scene.instances.last().expect("the hand")
         };
@@ -280,7 +280,7 @@ pub(crate) mod tests {
         let stretched = |tray: f64| {
             let mut thing = visible(Model::Rack, DVec3::splat(rack.rim_height_m));
             thing.pose.position.y = tray + 0.5 * rack.rim_height_m;
-            let scene = scene(&[thing], &stock, HandShape::Closing(0.0));
+            let scene = scene(&[thing], &stock, HandLook::right(HandShape::Closing(0.0)));
             let top = Vec3::Y * stock.rack_stand.height;
             scene.instances[place]
                 .world_from_mesh

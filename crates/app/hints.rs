@@ -20,6 +20,17 @@ pub enum Hint {
     Swing,
 }
 
+/// What a participant takes a ball with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Grip {
+    /// A controller's trigger.
+    Trigger,
+    /// A hand without one.
+    BareHand,
+    /// The mouse at the desk.
+    Mouse,
+}
+
 /// Height of a hint over the balls, and over the hand [m].
 const OVER_BALLS_M: f64 = 0.45;
 const OVER_HAND_M: f64 = 0.17;
@@ -55,11 +66,16 @@ impl Hint {
         }
     }
 
-    fn words(self, words: &HintWords) -> &str {
-        match self {
-            Self::Reach => &words.reach,
-            Self::Hold => &words.hold,
-            Self::Swing => &words.swing,
+    /// Who has never held it is told what to do with what is in the hand.
+    fn words(self, grip: Grip, words: &HintWords) -> &str {
+        match (self, grip) {
+            (Self::Reach, Grip::Mouse) => &words.reach_mouse,
+            (Self::Reach, _) => &words.reach,
+            (Self::Hold, Grip::Trigger) => &words.hold,
+            (Self::Hold, Grip::BareHand) => &words.hold_bare,
+            (Self::Hold, Grip::Mouse) => &words.hold_mouse,
+            (Self::Swing, Grip::Mouse) => &words.swing_mouse,
+            (Self::Swing, _) => &words.swing,
         }
     }
 
@@ -86,13 +102,13 @@ fn is_quiet(game: &Game) -> bool {
     seen.is_set && !seen.balls.iter().any(astray)
 }
 
-/// The sign of the hint that is due, if one is.
-pub fn sign(game: &Game, words: &HintWords) -> Option<Sign> {
+/// The sign of the hint that is due, if one is, for who takes balls so.
+pub fn sign(game: &Game, grip: Grip, words: &HintWords) -> Option<Sign> {
     let hint = Hint::of(game)?;
     let eye = game.head_pose_world()?.position;
     let [letter_m, _] = hint.letter_and_distance();
     Some(Sign {
-        text: hint.words(words).to_owned(),
+        text: hint.words(grip, words).to_owned(),
         letter_m,
         pose: facing(hint.place(game)?, eye),
         ground: Ground::Plain,
@@ -132,7 +148,7 @@ mod tests {
             if seen.last() != Some(&hint) {
                 seen.push(hint);
             }
-            let sign = sign(&game, &words.hints);
+            let sign = sign(&game, Grip::Trigger, &words.hints);
             if hint == Some(Hint::Hold) {
                 let hand = game.hand_pose_world().expect("it is tracked").position;
                 let away = sign.expect("a head").pose.position - hand;
@@ -144,6 +160,20 @@ mod tests {
             seen,
             [Some(Hint::Reach), Some(Hint::Hold), Some(Hint::Swing), None]
         );
+    }
+
+    /// There is no trigger at the desk, and none in a bare hand: whoever is told to hold one looks for it.
+    #[test]
+    fn a_hint_names_what_is_in_the_hand() {
+        let words = Words::shipped().hints;
+        let all = |grip| Hint::ALL.map(|hint| hint.words(grip, &words).to_lowercase());
+        let trigger = all(Grip::Trigger).concat();
+        assert!(trigger.contains("trigger") && !trigger.contains("mouse"));
+        for grip in [Grip::BareHand, Grip::Mouse] {
+            assert!(!all(grip).concat().contains("trigger"), "{grip:?}");
+        }
+        assert!(all(Grip::BareHand)[1].contains("hand"));
+        assert!(all(Grip::Mouse)[1].contains("button") && all(Grip::Mouse)[2].contains("mouse"));
     }
 
     #[test]

@@ -115,7 +115,7 @@ pub fn hash_text(hash: u64) -> String {
 /// One input as an array: steps, buttons, trigger, head, hand, and the trigger's last change where it is known.
 ///
 /// Buttons are a sum: 1 walk forward, 2 walk back, 4 Red, 8 Blue, 16 Red locked, 32 Blue locked, 64 a new tracking space, 128 paused,
-/// 256 back to the start.
+/// 256 back to the start, 512 a left hand.
 /// Head and hand are `null` when not tracked, else position, rotation (x, y, z, w) and, when measured, linear and angular
 /// velocity. The change is its age in seconds and the hand then; it is left out where there is none.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -147,6 +147,7 @@ impl From<&Input> for InputLine {
             input.recentred,
             input.paused,
             input.recentre,
+            input.is_left,
         ];
         let sum = buttons
             .iter()
@@ -183,6 +184,7 @@ impl From<&InputLine> for Input {
             recentred: pressed(6),
             paused: pressed(7),
             recentre: pressed(8),
+            is_left: pressed(9),
             steps: *steps,
             trigger_change: change.as_deref().map(|(age_s, hand)| TriggerChange {
                 age_s: *age_s,
@@ -261,13 +263,14 @@ mod tests {
             recentred: true,
             paused: true,
             recentre: true,
+            is_left: true,
             steps: 8,
             trigger_change: None,
         };
         let text = serde_json::to_string(&InputLine::from(&input)).expect("plain numbers");
         let line: InputLine = serde_json::from_str(&text).expect("just written");
         assert_eq!(Input::from(&line), input);
-        assert!(text.starts_with("[8,489,0.30000000000000004,["), "{text}");
+        assert!(text.starts_with("[8,1001,0.30000000000000004,["), "{text}");
         let changed = Input {
             trigger_change: Some(TriggerChange {
                 age_s: 0.1 / 3.0,

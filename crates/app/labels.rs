@@ -4,6 +4,7 @@
 use game::{Button, Game};
 use glam::DVec3;
 
+use crate::hints::Grip;
 use crate::signs::{Ground, Sign, facing};
 use crate::words::Words;
 use crate::{hints, practice};
@@ -13,8 +14,8 @@ const FROM_BUTTON: DVec3 = DVec3::new(0.0, 0.12, -0.12);
 /// Size of its letters [m], and from how far it is read at most: from the start [m].
 pub const BUTTON_LETTER_AND_DISTANCE: [f64; 2] = [0.048, 2.8];
 
-/// What hangs in the room now; nothing while the head is not tracked.
-pub fn signs(game: &Game, words: &Words) -> Vec<Sign> {
+/// What hangs in the room now for who takes balls with this; nothing while the head is not tracked.
+pub fn signs(game: &Game, grip: Grip, words: &Words) -> Vec<Sign> {
     let Some(head) = game.head_pose_world() else {
         return Vec::new();
     };
@@ -23,7 +24,7 @@ pub fn signs(game: &Game, words: &Words) -> Vec<Sign> {
         signs.extend(names(game, words, head.position));
     }
     signs.extend(practice::weights(game, words, head.position));
-    signs.extend(hints::sign(game, &words.hints));
+    signs.extend(hints::sign(game, grip, &words.hints));
     signs
 }
 
@@ -124,13 +125,16 @@ mod tests {
         };
         let mut game = Game::new(conditions, 1).expect("the shipped room");
         let words = Words::shipped();
-        assert!(signs(&game, &words).is_empty(), "nobody is there to read");
+        assert!(
+            signs(&game, Grip::Trigger, &words).is_empty(),
+            "nobody is there to read"
+        );
         game.step(&Input {
             head: Some(Tracked::at(Pose::from_position(DVec3::Y * 1.62))),
             steps: 8,
             ..Input::default()
         });
-        let texts: Vec<String> = signs(&game, &words)
+        let texts: Vec<String> = signs(&game, Grip::Trigger, &words)
             .into_iter()
             .map(|sign| sign.text)
             .collect();

@@ -11,7 +11,7 @@ use physics::Pose;
 use renderer::{BackendChoice, Fov, Gpu, Renderer, Scene, TextPainter, View};
 
 use crate::args::LookArguments;
-use crate::convert::{self, HandShape, Stock};
+use crate::convert::{self, HandLook, HandShape, Stock};
 
 /// Width and height at which times are taken [pixels]: the display of the experiment.
 pub const TIMED_SIZE: [u32; 2] = [704, 480];
@@ -28,7 +28,7 @@ pub struct Place {
     pub from: DVec3,
     /// What it looks at [m].
     pub at: DVec3,
-    /// Where the hand is, and its shape.
+    /// Where a right hand is, and its shape.
     hand: (DVec3, HandShape),
 }
 
@@ -97,7 +97,7 @@ impl Place {
             is_highlighted: false,
         };
         let others = room.iter().filter(|thing| thing.model != Model::Hand);
-        convert::scene(others.chain([&hand]), stock, shape)
+        convert::scene(others.chain([&hand]), stock, HandLook::right(shape))
     }
 }
 

@@ -99,7 +99,7 @@ pub fn weights(game: &Game, words: &Words, eye: DVec3) -> Vec<Sign> {
 }
 
 /// The way of the last ball down the lane.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Track {
     /// Where it touched the lane, world frame [m].
     points: Vec<DVec3>,

@@ -120,7 +120,7 @@ impl Reporter {
             let point = game.observe().buttons[button as usize].top;
             now(Sounding::Refusal { point })
         }));
-        let is_running = game.phase() == Phase::Setting;
+        let is_running = game.phase() == Phase::Setting && !game.is_paused();
         if is_running != self.was_running {
             self.was_running = is_running;
             let point = self.machine;
@@ -323,6 +323,56 @@ mod tests {
         let room = settings(&with).and_then(|settings| settings.room);
         assert_eq!(room.map(|room| room.size_m.x), Some(12.0));
         assert!(Reporter::of(&with).is_some());
+    }
+
+    /// A ball rolls, then the machine works: in a pause neither is told of, and afterwards both are again.
+    #[test]
+    fn a_pause_is_silent() {
+        use crate::devices::Device;
+        use crate::devices::script::{Script, Velocities};
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("config");
+        let conditions = game::Conditions::load(&folder, "alley", &[]).expect("shipped");
+        let mut script = Script::new(
+            &conditions.lobby,
+            3,
+            Velocities::Measured,
+            &[game::Button::Red],
+        );
+        let mut reporter = Reporter::of(&conditions.lobby).expect("it lists sound");
+        let mut game = Game::new(conditions, 1).expect("an alley");
+        let mut told = |game: &mut Game, input: &game::Input| {
+            game.step(input);
+            let sounded = reporter.report(game);
+            let rolls = |event: &Event| matches!(event.sounding, Sounding::Rolling(_));
+            let runs = sounded.iter().find_map(|event| match event.sounding {
+                Sounding::Machine { is_running, .. } => Some(is_running),
+                _ => None,
+            });
+            (sounded.iter().any(rolls), runs, sounded.len())
+        };
+        let (mut rolled, mut ran) = (false, false);
+        while !(rolled && ran) {
+            assert!(!script.is_done(), "nothing rolled, or no machine ran");
+            let input = script.next(&game);
+            let (rolls, runs, _) = told(&mut game, &input);
+            let is_new = rolls && !rolled || runs == Some(true) && !ran;
+            (rolled, ran) = (rolled || rolls, ran || runs == Some(true));
+            if !is_new {
+                continue;
+            }
+            let paused = game::Input {
+                paused: true,
+                ..game::Input::default()
+            };
+            let (rolls_on, switched, _) = told(&mut game, &paused);
+            assert!(!rolls_on && switched != Some(true));
+            assert_eq!(switched, (runs == Some(true)).then_some(false));
+            assert_eq!(told(&mut game, &paused), (false, None, 0), "silence");
+            let input = script.next(&game);
+            let (rolls_again, runs_again, _) = told(&mut game, &input);
+            assert_eq!(rolls_again, rolls);
+            assert_eq!(runs_again, (runs == Some(true)).then_some(true));
+        }
     }
 
     #[test]

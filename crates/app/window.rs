@@ -31,6 +31,7 @@ use crate::devices::gamepad::Gamepads;
 use crate::devices::script::Script;
 use crate::devices::{Device, LONGEST_CATCH_UP_S};
 use crate::fence::{self, Space};
+use crate::hints::Grip;
 use crate::labels;
 use crate::panel::{Panel, PanelStock};
 use crate::pictures::{Painter, Wanted};
@@ -358,13 +359,13 @@ impl Stage {
         let again = self.again.as_ref();
         self.stock
             .show_again(again.and_then(|again| again.at(game.time())))?;
-        let mut scene = convert::scene(visible.iter(), &self.stock, convert::HandShape::of(game));
+        let mut scene = convert::scene(visible.iter(), &self.stock, convert::HandLook::of(game));
         scene.vignette = convert::vignette(game);
         let panel = self
             .panel_stock
             .instances(&self.panel, &mut self.renderer)?;
         scene.instances.extend(panel);
-        let signs = labels::signs(game, &self.words);
+        let signs = labels::signs(game, Grip::Mouse, &self.words);
         let signs = self.signs.instances(&signs, &mut self.renderer)?;
         scene.instances.extend(signs);
         scene.instances.extend(self.track.instances(&self.stock));

@@ -74,6 +74,14 @@ pub struct HintWords {
     pub hold: String,
     /// It has one.
     pub swing: String,
+    /// A bare hand could take one.
+    pub hold_bare: String,
+    /// At the desk: the hand is far from the balls.
+    pub reach_mouse: String,
+    /// At the desk: it could take one.
+    pub hold_mouse: String,
+    /// At the desk: it has one.
+    pub swing_mouse: String,
 }
 
 /// In practice.

@@ -1,6 +1,7 @@
 //! A small panel at the wrist of the hand that does not play: pause, go on, and the way back to the start.
 //!
-//! It is there while a controller has no menu button, or while the session is paused, and only while somebody looks at the wrist.
+//! It is there while a controller has no menu button, or while the session is paused, and only while somebody looks at the wrist and has
+//! nothing in the hand, nor anything to take: a ball that is carried in both hands is looked at for longer than a choice takes.
 //! A button is chosen by pointing at it with the hand that plays and pulling the trigger, or by looking at it for a while.
 
 use glam::{DVec2, DVec3};
@@ -66,8 +67,14 @@ pub struct Wrist {
 impl Wrist {
     /// Follows the arms at a time of display [s], where the panel `is_due`; tells what was chosen.
     pub fn attend(&mut self, arms: Option<Arms>, is_due: bool, now_s: f64) -> Option<Wish> {
+        let trigger = arms
+            .and_then(|arms| arms.pointer)
+            .map_or(0.0, |(_, trigger)| trigger);
         let arms = arms.filter(|arms| is_due && looks_at_wrist(arms));
         self.pose = arms.map(|arms| facing(hung(arms.wrist.position), arms.head.position));
+        // Also while nothing is seen of the panel: a trigger that is pulled already chooses nothing.
+        let was_pulled = self.is_pulled;
+        self.is_pulled = trigger > if was_pulled { LET_GO } else { PULLED };
         let (Some(arms), Some(pose)) = (arms, self.pose) else {
             (self.at, self.is_done) = (None, false);
             return None;
@@ -81,9 +88,6 @@ impl Wrist {
         if at != self.at {
             (self.at, self.since_s, self.is_done) = (at, now_s, false);
         }
-        let trigger = arms.pointer.map_or(0.0, |(_, trigger)| trigger);
-        let was_pulled = self.is_pulled;
-        self.is_pulled = trigger > if was_pulled { LET_GO } else { PULLED };
         let is_pressed = pointed.is_some() && self.is_pulled && !was_pulled;
         let is_dwelt =
             looked.is_some() && looked == at && !self.is_done && now_s - self.since_s >= DWELL_S;
@@ -209,6 +213,28 @@ mod tests {
         assert_eq!(attend(Wish::Recentre, 0.9), None, "it was pulled elsewhere");
         attend(Wish::Recentre, 0.0);
         assert_eq!(attend(Wish::Recentre, 0.9), Some(Wish::Recentre));
+    }
+
+    #[test]
+    fn a_trigger_that_was_pulled_elsewhere_chooses_nothing_on_its_way_over_the_panel() {
+        let mut wrist = Wrist::default();
+        let through = |target: DVec3| Some((Pose::from_position(EYE.lerp(target, 0.6)), 0.9));
+        let away = Arms {
+            pointer: through(button(Wish::Pause)),
+            ..looking(EYE + DVec3::NEG_Z)
+        };
+        let over = Arms {
+            pointer: through(button(Wish::Pause)),
+            ..looking(hung(WRIST) + DVec3::Y * 0.15)
+        };
+        assert_eq!(wrist.attend(Some(away), true, 0.0), None);
+        assert_eq!(wrist.attend(Some(over), true, 0.1), None);
+        let let_go = Arms {
+            pointer: over.pointer.map(|(hand, _)| (hand, 0.0)),
+            ..over
+        };
+        assert_eq!(wrist.attend(Some(let_go), true, 0.2), None);
+        assert_eq!(wrist.attend(Some(over), true, 0.3), Some(Wish::Pause));
     }
 
     #[test]

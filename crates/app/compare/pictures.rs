@@ -102,7 +102,7 @@ impl Gallery<'_> {
             time,
             head: None,
             moving: self.comparison.courses[index].picture(time).to_vec(),
-            hand: convert::HandShape::Closing(0.0),
+            hand: convert::HandLook::right(convert::HandShape::Closing(0.0)),
             scores: std::sync::Arc::new(convert::Scores::empty(game::MAX_FRAMES)),
         };
         self.painter.one_eye(self.still, &shot, view, size)

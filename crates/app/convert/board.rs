@@ -254,6 +254,46 @@ fn paint_row(painter: &egui::Painter, row: &Row, name: &str, area: Rect) {
 mod tests {
     use super::*;
 
+    /// Width of a text on the board [pixels].
+    fn width(text: &str) -> f32 {
+        let context = egui::Context::default();
+        let mut width = 0.0;
+        let mut output = context.run_ui(egui::RawInput::default(), |ui| {
+            let font = FontId::proportional(WORD_PX);
+            let painter = ui.ctx().debug_painter();
+            let galley = painter.layout_no_wrap(text.to_owned(), font, INK);
+            width = galley.size().x;
+        });
+        output.textures_delta.clear();
+        width
+    }
+
+    /// What an arm can do at most, in every language that there is, and with help.
+    #[test]
+    fn what_is_told_of_a_throw_fits_on_the_board() {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+        for name in ["words.toml", "words-de.toml"] {
+            let mut config = super::super::tests::config();
+            config.guidance.words = name.to_owned();
+            let words = Words::load(folder, &config).expect("shipped words");
+            for (angle, is_foul) in [(0.3, true), (-0.3, false), (-0.3, true)] {
+                let throw = ThrowSeen {
+                    speed: 12.4,
+                    angle,
+                    turns: 9.9,
+                    is_foul,
+                };
+                let [first, second] = &told(Some(throw), &words)[..] else {
+                    panic!("two lines");
+                };
+                let help = fill(&words.board.assist, &[("percent", &100)]);
+                let board = SIZE[0] as f32 - 30.0 - 18.0;
+                assert!(width(first) + 30.0 + width(&help) < board, "{first} {help}");
+                assert!(width(second) < board, "{second}");
+            }
+        }
+    }
+
     #[test]
     fn a_throw_is_told_in_two_lines() {
         let throw = ThrowSeen {

@@ -8,7 +8,7 @@ use game::{Config, ShowsConfig};
 use glam::{Mat4, Vec3};
 use renderer::{Canvas, Fov, Instance, Material, Renderer, View};
 
-use super::{HandShape, Stock, scene, settings};
+use super::{HandLook, HandShape, Stock, scene, settings};
 use crate::again::Moment;
 use crate::scenery;
 
@@ -87,7 +87,8 @@ impl Screen {
     pub fn show(&mut self, moment: Option<Moment>) -> Result<()> {
         let is_same = |a: &Moment| self.shown.as_ref().is_some_and(|b| Arc::ptr_eq(a, b));
         if let Some(things) = moment.as_ref().filter(|things| !is_same(things)) {
-            let scene = scene(things.iter(), &self.stock, HandShape::Closing(0.0));
+            let look = HandLook::right(HandShape::Closing(0.0));
+            let scene = scene(things.iter(), &self.stock, look);
             self.canvas.paint(&mut self.renderer, &scene, self.view)?;
         }
         self.shown = moment;

@@ -19,17 +19,56 @@ pub enum HandShape {
     /// Round what it holds.
     Holding(Model),
     /// As a tracker has the fingers.
-    Bent {
-        /// How they are bent.
-        fingers: Fingers,
-        /// A left hand; the others are right ones.
-        is_left: bool,
-    },
+    Bent(Fingers),
+}
+
+/// The hand as it is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HandLook {
+    /// Its shape.
+    pub shape: HandShape,
+    /// It is a left one.
+    pub is_left: bool,
+}
+
+impl HandLook {
+    /// A right hand in a shape.
+    pub fn right(shape: HandShape) -> Self {
+        Self {
+            shape,
+            is_left: false,
+        }
+    }
+
+    /// A left hand in a shape.
+    pub fn left(shape: HandShape) -> Self {
+        Self {
+            shape,
+            is_left: true,
+        }
+    }
+
+    /// How the hand of a game looks now.
+    pub fn of(game: &Game) -> Self {
+        Self {
+            shape: HandShape::of(game),
+            is_left: game.hand_is_left(),
+        }
+    }
+
+    /// As these fingers are bent, unless it holds something.
+    pub fn bent(self, tracked: Option<Fingers>) -> Self {
+        let shape = match (self.shape, tracked) {
+            (HandShape::Holding(_), _) | (_, None) => self.shape,
+            (_, Some(fingers)) => HandShape::Bent(fingers),
+        };
+        Self { shape, ..self }
+    }
 }
 
 impl HandShape {
     /// The shape that the hand of a game has now.
-    pub fn of(game: &Game) -> Self {
+    fn of(game: &Game) -> Self {
         if let Some(model) = game.held() {
             return Self::Holding(model);
         }
@@ -38,14 +77,6 @@ impl HandShape {
             return Self::Pointing;
         }
         Self::Closing(trigger)
-    }
-
-    /// As these fingers are bent, those of a left hand or a right one, unless it holds something.
-    pub fn bent(self, tracked: Option<(Fingers, bool)>) -> Self {
-        match (self, tracked) {
-            (Self::Holding(_), _) | (_, None) => self,
-            (_, Some((fingers, is_left))) => Self::Bent { fingers, is_left },
-        }
     }
 
     /// The ball that it holds.

@@ -276,6 +276,7 @@ impl Desk {
             recentred: false,
             paused: self.is_paused,
             recentre: std::mem::take(&mut self.recentre),
+            is_left: false,
             steps: if self.is_paused { 0 } else { self.steps },
             trigger_change: None,
         }

@@ -53,6 +53,10 @@ impl Participant {
         self.throwing
     }
 
+    fn is_left(&self) -> bool {
+        self.throwing == Side::Left
+    }
+
     /// Hears that tracking space is laid anew for what is seen at `display_ns` or later.
     pub fn recentre(&mut self, display_ns: i64) {
         self.recentre_ns = Some(display_ns);
@@ -69,6 +73,7 @@ impl Participant {
         Input {
             head: readings.head.map(tracked),
             paused: true,
+            is_left: self.is_left(),
             ..Input::default()
         }
     }
@@ -96,6 +101,7 @@ impl Participant {
             return Input {
                 head: readings.head.map(tracked),
                 recentred,
+                is_left: self.is_left(),
                 steps: self.due(display_ns, period_s),
                 ..Input::default()
             };
@@ -122,6 +128,7 @@ impl Participant {
             recentred,
             paused: false,
             recentre: false,
+            is_left: self.is_left(),
             steps: self.due(display_ns, period_s),
             // Where the hand was before is told in a space that is no more.
             trigger_change: change
@@ -144,10 +151,10 @@ impl Participant {
         changes
     }
 
-    /// The fingers of the hand that throws, and whether it is the left one, where it is bare.
-    pub fn fingers(&self, readings: &Readings) -> Option<(Fingers, bool)> {
+    /// The fingers of the hand that throws, where it is bare.
+    pub fn fingers(&self, readings: &Readings) -> Option<Fingers> {
         let bare = readings.hands[self.throwing as usize].bare?;
-        Some((Fingers::tracked(&bare.bends), self.throwing == Side::Left))
+        Some(Fingers::tracked(&bare.bends))
     }
 
     /// Head and hands in the room: the panel hangs at the hand that does not play, where it is tracked, and the other points at it.

@@ -220,6 +220,7 @@ impl Script {
             recentred: false,
             paused: false,
             recentre: false,
+            is_left: false,
             steps: self.steps,
             trigger_change: None,
         }

@@ -3,15 +3,17 @@
 
 use anyhow::Result;
 use game::{Config, Game};
+use glam::DVec3;
 use physics::Pose;
+use renderer::Instance;
 use renderer::headset::{Frame, HeadsetSession};
-use renderer::{Instance, Renderer};
 
 use crate::convert::Stock;
 use crate::fence::{self, Space};
+use crate::hints::Grip;
 use crate::labels;
 use crate::practice::Track;
-use crate::signs::SignStock;
+use crate::signs::Sign;
 use crate::words::Words;
 use crate::wrist::{Arms, Wish, Wrist};
 
@@ -66,40 +68,59 @@ impl Around {
         Ok(())
     }
 
-    /// Heeds the panel at the wrist: what was chosen there, a pause already carried out.
+    /// Heeds the panel at the wrist of who `is_busy` with a ball or not: what was chosen there, a pause already carried out.
     pub fn heed(
         &mut self,
         arms: Option<Arms>,
+        is_busy: bool,
         attention: &mut Attention,
         display_ns: i64,
     ) -> Option<Wish> {
         let now_s = display_ns as f64 * 1e-9;
-        let wish = self.wrist.attend(arms, attention.needs_panel(), now_s);
+        let is_due = attention.needs_panel(is_busy);
+        let wish = self.wrist.attend(arms, is_due, now_s);
         if wish == Some(Wish::Pause) {
             attention.toggle();
         }
         wish
     }
 
-    /// Everything that is to be drawn of it.
-    ///
-    /// # Errors
-    /// When a text cannot be painted.
-    pub fn instances(
+    /// What is to be seen of it by who takes balls with this, while `arms` are where they are.
+    pub fn beside(
         &mut self,
         game: &Game,
+        grip: Grip,
         arms: Option<Arms>,
         is_paused: bool,
-        (stock, signs, renderer): (&Stock, &mut SignStock, &mut Renderer),
-    ) -> Result<Vec<Instance>> {
+    ) -> Beside {
         self.track.notice(game);
-        let mut texts = labels::signs(game, &self.words);
-        texts.extend(self.wrist.signs(is_paused, &self.words.pause));
-        let mut instances = signs.instances(&texts, renderer)?;
-        instances.extend(self.track.instances(stock));
-        let wrist = arms.map(|arms| arms.wrist.position);
-        let fence = fence::instances(game, self.space.as_ref(), wrist.as_slice(), stock);
-        instances.extend(fence);
-        Ok(instances)
+        let mut signs = labels::signs(game, grip, &self.words);
+        signs.extend(self.wrist.signs(is_paused, &self.words.pause));
+        Beside {
+            signs,
+            track: self.track.clone(),
+            space: self.space,
+            wrist: arms.map(|arms| arms.wrist.position),
+        }
+    }
+}
+
+/// What is to be seen of it: by the participant, and by who watches the mirror.
+#[derive(Clone, Debug, Default)]
+pub struct Beside {
+    /// Texts in the room and at the wrist.
+    pub signs: Vec<Sign>,
+    track: Track,
+    space: Option<Space>,
+    wrist: Option<DVec3>,
+}
+
+impl Beside {
+    /// All of it that is no text.
+    pub fn instances(&self, game: &Game, stock: &Stock) -> Vec<Instance> {
+        let mut instances = self.track.instances(stock);
+        let (space, wrist) = (self.space.as_ref(), self.wrist.as_slice());
+        instances.extend(fence::instances(game, space, wrist, stock));
+        instances
     }
 }

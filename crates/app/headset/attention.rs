@@ -37,9 +37,10 @@ impl Attention {
         }
     }
 
-    /// Whether the participant needs a panel at the wrist: to pause where no controller has a button for it, and in a pause.
-    pub fn needs_panel(&self) -> bool {
-        self.is_paused || self.has_menu == [false; 2]
+    /// Whether the participant needs a panel at the wrist: to pause where no controller has a button for it and nobody `is_busy` with
+    /// a ball, and in a pause.
+    pub fn needs_panel(&self, is_busy: bool) -> bool {
+        self.is_paused || self.has_menu == [false; 2] && !is_busy
     }
 
     /// Whether somebody is there, paused or not, while the session has this focus.
@@ -107,7 +108,8 @@ mod tests {
     #[test]
     fn a_panel_is_needed_where_no_controller_has_a_menu_button_and_in_a_pause() {
         let mut attention = Attention::new();
-        assert!(attention.needs_panel(), "no controller yet");
+        assert!(attention.needs_panel(false), "no controller yet");
+        assert!(!attention.needs_panel(true), "a ball in the hand");
         let profile = |side, name: &str| Note::Profile {
             side,
             profile: Some(format!("/interaction_profiles/{name}")),
@@ -115,12 +117,12 @@ mod tests {
         let index = "valve/index_controller";
         attention.hear(&profile(Side::Left, index));
         attention.hear(&profile(Side::Right, index));
-        assert!(attention.needs_panel());
+        assert!(attention.needs_panel(false));
         attention.hear(&profile(Side::Left, "oculus/touch_controller"));
-        assert!(!attention.needs_panel());
-        assert!(attention.toggle() && attention.needs_panel());
+        assert!(!attention.needs_panel(false));
+        assert!(attention.toggle() && attention.needs_panel(true), "paused");
         assert!(!attention.is_here(Focus::Focused) && attention.is_present(Focus::Focused));
-        assert!(!attention.toggle() && !attention.needs_panel());
+        assert!(!attention.toggle() && !attention.needs_panel(false));
     }
 
     #[test]

@@ -24,11 +24,9 @@ use winit::window::{Window, WindowId};
 use super::Shared;
 use super::watch::Watched;
 use crate::convert::{self, Stock};
-use crate::labels;
 use crate::signs::SignStock;
 use crate::study::board::{Board, WIDTH};
 use crate::study::experimenter;
-use crate::words::Words;
 
 /// Time between two pictures: enough to follow, little beside the headset's.
 const PERIOD: Duration = Duration::from_millis(33);
@@ -82,7 +80,6 @@ struct Stage {
     /// The experimenter's, in a study.
     board: Option<Board>,
     signs: SignStock,
-    words: Words,
 }
 
 struct Mirror {
@@ -122,7 +119,6 @@ impl Mirror {
             stock,
             board,
             signs,
-            words: Words::load(&self.root, &self.config)?,
         })
     }
 
@@ -152,22 +148,26 @@ impl Mirror {
             stage.target.draw_overlays()?;
             return Ok(());
         };
+        let beside = self.shared.beside();
         let seen = self.shared.with(|session| {
             let game = session.game();
             Ok((
                 game.visible(),
-                convert::HandShape::of(game).bent(self.shared.fingers()),
+                convert::HandLook::of(game).bent(self.shared.fingers()),
                 convert::Scores::of(game),
-                labels::signs(game, &stage.words),
+                convert::vignette(game),
+                beside.instances(game, &stage.stock),
             ))
         })?;
-        let Some((visible, hand, scores, signs)) = seen else {
+        let Some((visible, hand, scores, vignette, more)) = seen else {
             return Ok(());
         };
         stage.stock.show_scores(&mut stage.renderer, &scores)?;
         stage.stock.show_again(self.shared.again())?;
         let mut scene = convert::scene(visible.iter(), &stage.stock, hand);
-        let signs = stage.signs.instances(&signs, &mut stage.renderer)?;
+        scene.vignette = vignette;
+        scene.instances.extend(more);
+        let signs = stage.signs.instances(&beside.signs, &mut stage.renderer)?;
         scene.instances.extend(signs);
         stage
             .target

@@ -22,6 +22,7 @@ use super::{notes, pulses};
 use crate::again::Again;
 use crate::convert;
 use crate::devices::headset::Participant;
+use crate::hints::Grip;
 use crate::lettering::Scribe;
 use crate::panel::Panel;
 use crate::sound::Ears;
@@ -235,7 +236,9 @@ impl Player {
                 .is_present(focus)
                 .then(|| participant.arms(&readings, rig))
                 .flatten();
-            let wish = around.heed(arms, attention, at);
+            let game = session.game();
+            let is_busy = game.held().is_some() || game.could_take_a_ball();
+            let wish = around.heed(arms, is_busy, attention, at);
             let is_here = attention.is_here(focus);
             let mut input = if is_here {
                 let is_holding = session.game().held().is_some();
@@ -259,21 +262,24 @@ impl Player {
                 again.at(game.time())
             });
             let visible = game.visible_at(participant.share());
-            let hand_shape = convert::HandShape::of(game).bent(fingers);
-            let mut scene = convert::scene(visible.iter(), &stage.stock, hand_shape);
+            let look = convert::HandLook::of(game).bent(fingers);
+            let mut scene = convert::scene(visible.iter(), &stage.stock, look);
             if is_here {
                 let faded = fading.of(&visible, at);
                 if let Some((hand, share)) = faded {
-                    let hand = convert::shrunk_hand(&hand, &stage.stock, hand_shape, share);
+                    let hand = convert::shrunk_hand(&hand, &stage.stock, look, share);
                     scene.instances.extend(hand);
                 }
             } else {
                 fading.forget();
             }
             scene.vignette = convert::vignette(game);
-            let drawn = (&stage.stock, &mut stage.signs, &mut stage.renderer);
-            let more = around.instances(game, arms, attention.is_paused(), drawn)?;
-            scene.instances.extend(more);
+            let grip = fingers.map_or(Grip::Trigger, |_| Grip::BareHand);
+            let beside = around.beside(game, grip, arms, attention.is_paused());
+            scene.instances.extend(beside.instances(game, &stage.stock));
+            let signs = stage.signs.instances(&beside.signs, &mut stage.renderer)?;
+            scene.instances.extend(signs);
+            keys.set_beside(beside);
             let pulse = pulses::of(game.events(), held).filter(|_| is_here);
             let happened = Happened::among(game.events());
             let shown = (convert::Scores::of(game), moment);

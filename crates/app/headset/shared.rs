@@ -13,6 +13,8 @@ use crate::scenery::hand::Fingers;
 use crate::session::Session;
 use crate::voice::Voice;
 
+use super::around::Beside;
+
 /// What a thread that panicked left is as whole as before: only single values are put in.
 fn locked<T>(value: &Mutex<T>) -> MutexGuard<'_, T> {
     value.lock().unwrap_or_else(PoisonError::into_inner)
@@ -31,8 +33,10 @@ pub struct Shared {
     left_eye: Mutex<Option<View>>,
     /// What the screen over the lane shows again.
     again: Mutex<Option<Moment>>,
-    /// The fingers of a bare hand that plays, and whether it is the left one.
-    fingers: Mutex<Option<(Fingers, bool)>>,
+    /// What is around the participant.
+    beside: Mutex<Beside>,
+    /// The fingers of a bare hand that plays.
+    fingers: Mutex<Option<Fingers>>,
     /// The experimenter's keys for Red and Blue: pressed since the last frame.
     keys: [AtomicBool; 2],
     /// Says what the experimenter should know.
@@ -53,6 +57,7 @@ impl Shared {
             began: Instant::now(),
             left_eye: Mutex::new(None),
             again: Mutex::new(None),
+            beside: Mutex::default(),
             fingers: Mutex::new(None),
             keys: Default::default(),
             voice: Voice::new()?,
@@ -104,6 +109,15 @@ impl Shared {
         locked(&self.again).clone()
     }
 
+    /// Tells the mirror what is around the participant.
+    pub fn set_beside(&self, beside: Beside) {
+        *locked(&self.beside) = beside;
+    }
+
+    pub fn beside(&self) -> Beside {
+        locked(&self.beside).clone()
+    }
+
     pub fn left_eye(&self) -> Option<View> {
         *locked(&self.left_eye)
     }
@@ -112,11 +126,11 @@ impl Shared {
         *locked(&self.left_eye) = left_eye;
     }
 
-    pub fn fingers(&self) -> Option<(Fingers, bool)> {
+    pub fn fingers(&self) -> Option<Fingers> {
         *locked(&self.fingers)
     }
 
-    pub fn see_fingers(&self, fingers: Option<(Fingers, bool)>) {
+    pub fn see_fingers(&self, fingers: Option<Fingers>) {
         *locked(&self.fingers) = fingers;
     }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use game::{Button, EventKind, Game, Model, Visible};
 use physics::Pose;
 
-use crate::convert::{HandShape, Scores};
+use crate::convert::{HandLook, Scores};
 use crate::sound::{Reporter, Sounded};
 
 /// Snapshots per second: a third of the scripted rate. Every one of them may become a picture of the
@@ -21,8 +21,8 @@ pub struct Shot {
     pub head: Option<Pose>,
     /// The things that can move.
     pub moving: Vec<Visible>,
-    /// The hand's shape.
-    pub hand: HandShape,
+    /// How the hand looks.
+    pub hand: HandLook,
     /// Both score sheets; many snapshots share one.
     pub scores: Arc<Scores>,
 }
@@ -173,7 +173,7 @@ impl Camera {
                 .into_iter()
                 .filter(|visible| can_move(visible.model))
                 .collect(),
-            hand: HandShape::of(game),
+            hand: HandLook::of(game),
             scores: Arc::clone(&self.scores),
         });
         self.last_shot = Some(game.time());

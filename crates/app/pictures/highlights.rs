@@ -191,6 +191,7 @@ fn clips_of(film: &Film, index: usize, shows: &Shows<'_>) -> Vec<Clip> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::convert::{HandLook, HandShape};
     use game::Button;
 
     /// A throw every ten seconds.
@@ -199,7 +200,7 @@ mod tests {
             time: number as f64 / 30.0,
             head: None,
             moving: Vec::new(),
-            hand: crate::convert::HandShape::Closing(0.0),
+            hand: HandLook::right(HandShape::Closing(0.0)),
             scores: std::sync::Arc::new(crate::convert::Scores::empty(game::MAX_FRAMES)),
         };
         let throw = |(number, fallen): (usize, &usize)| Throw {

@@ -203,6 +203,33 @@ mod tests {
         assert!(entry(4).distance(thumb) < 0.2, "{} {thumb}", entry(4));
     }
 
+    /// Counter-clockwise from outside as the normals have it, so that neither culling nor light is deceived.
+    #[test]
+    fn a_left_hand_is_a_right_one_in_a_mirror_with_its_outside_outside() {
+        let right = hand(&Fingers::gripping(), 8);
+        let left = right.mirrored();
+        let mirror = Vec3::new(-1.0, 1.0, 1.0);
+        assert_eq!(left.triangles.len(), right.triangles.len());
+        for (l, r) in left.vertices.iter().zip(&right.vertices) {
+            assert_eq!(l.position, mirror * r.position);
+            assert!(l.normal.abs_diff_eq(mirror * r.normal, 1e-6));
+        }
+        for mesh in [&right, &left] {
+            for triangle in &mesh.triangles {
+                let [a, b, c] = triangle.map(|corner| mesh.vertices[corner as usize]);
+                let wound = (b.position - a.position).cross(c.position - a.position);
+                let outward = a.normal + b.normal + c.normal;
+                // At a pole a triangle has no area.
+                assert!(
+                    wound.length() < 1e-9 || wound.dot(outward) > 0.0,
+                    "{wound} {outward}"
+                );
+            }
+        }
+        let thumb_side = |mesh: &Mesh| mesh.vertices.iter().map(|v| v.position.x).sum::<f32>();
+        assert!(thumb_side(&right) < 0.0 && thumb_side(&left) > 0.0);
+    }
+
     #[test]
     fn a_closing_hand_comes_nearer_to_its_palm_without_a_leap() {
         let reach = |closed: f32| tips(&Fingers::closing(closed))[1].z;

@@ -71,6 +71,13 @@ impl Mesh {
             .extend([[base, base + 1, base + 2], [base, base + 2, base + 3]]);
     }
 
+    /// Its mirror image across the plane x = 0.
+    pub fn mirrored(&self) -> Self {
+        let mut image = Self::default();
+        image.append(self, Affine3A::from_scale(Vec3::new(-1.0, 1.0, 1.0)));
+        image
+    }
+
     /// The same for the renderer, whose images run downwards.
     pub fn to_data(&self) -> MeshData {
         let vertices = self.vertices.iter().map(|v| renderer::Vertex {

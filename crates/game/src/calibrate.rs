@@ -6,7 +6,7 @@
 use glam::DVec3;
 
 use crate::Game;
-use crate::config::{Config, DeskConfig, RackConfig};
+use crate::config::Config;
 use crate::event::EventKind;
 use crate::input::{Input, Tracked};
 use crate::room::Room;
@@ -17,6 +17,8 @@ const STRETCHED_M: f64 = 0.35;
 /// And not farther below or above the eyes than this [m].
 const BELOW_EYES_M: f64 = 0.55;
 const ABOVE_EYES_M: f64 = 0.2;
+/// Who measures looks ahead: one who bends over a ball that the hand misses looks farther down than this, the sine of 34 degrees.
+const LOWEST_GAZE: f64 = -0.56;
 /// Height of the shoulders, in heights of the eyes: 1.33 m of 1.62 m.
 const SHOULDER_SHARE: f64 = 0.82;
 /// Share of the reach that is comfortable.
@@ -71,15 +73,13 @@ impl Game {
             && matches!(self.stage, Stage::Ready { .. })
             && self.hand.held.is_none()
             && input.trigger >= self.room.config.hand.trigger_close;
-        let tracked = |thing: Option<Tracked>| {
-            thing
-                .filter(Tracked::is_usable)
-                .map(|thing| thing.pose.position)
-        };
+        let tracked = |thing: Option<Tracked>| Some(thing.filter(Tracked::is_usable)?.pose);
         let (head, hand) = (tracked(input.head)?, tracked(input.hand)?);
+        let looks_ahead = (head.rotation * DVec3::NEG_Z).y > LOWEST_GAZE;
+        let (head, hand) = (head.position, hand.position);
         let is_stretched = over_floor(head, hand) >= STRETCHED_M
             && (-BELOW_EYES_M..=ABOVE_EYES_M).contains(&(hand.y - head.y));
-        (is_time && is_stretched).then_some([head, hand])
+        (is_time && is_stretched && looks_ahead).then_some([head, hand])
     }
 
     fn calibrate(&mut self, head: DVec3, hand: DVec3) {
@@ -92,15 +92,19 @@ impl Game {
             0.0
         };
         self.world_from_tracking.position.y = lift;
-        let fitted = Fitted::of(&self.room.config, eye_height_m + lift, reach_m);
+        let fitted = Fitted::of(
+            &self.room.config,
+            self.furniture,
+            eye_height_m + lift,
+            reach_m,
+        );
         let conditions = &mut self.conditions;
         for config in [
             &mut conditions.lobby,
             &mut conditions.red,
             &mut conditions.blue,
         ] {
-            config.rack.tray_height_m = fitted.tray_m;
-            config.desk.height_m = fitted.desk_m;
+            fitted.put(config);
         }
         let config = match self.playing {
             Some(button) => self.conditions.of(button),
@@ -116,6 +120,15 @@ impl Game {
             desk_height_m: fitted.desk_m,
         });
     }
+
+    /// Settings whose rack and desk are where those of the session are, if they were made for it.
+    pub(crate) fn within_reach(&self, config: &Config) -> Config {
+        let mut config = config.clone();
+        if Fitted::as_set(&config) == self.furniture {
+            Fitted::as_set(&self.conditions.lobby).put(&mut config);
+        }
+        config
+    }
 }
 
 fn over_floor(a: DVec3, b: DVec3) -> f64 {
@@ -123,16 +136,29 @@ fn over_floor(a: DVec3, b: DVec3) -> f64 {
     DVec3::new(way.x, 0.0, way.z).length()
 }
 
-/// Heights at which rack and desk are within reach.
-#[derive(Debug, PartialEq)]
-struct Fitted {
+/// Heights of rack and desk.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Fitted {
     tray_m: f64,
     desk_m: f64,
 }
 
 impl Fitted {
-    /// Heights in proportion to the eyes', but never so low that a short arm does not reach down.
-    fn of(config: &Config, eye_m: f64, reach_m: f64) -> Self {
+    /// As settings have them.
+    pub(crate) fn as_set(config: &Config) -> Self {
+        Self {
+            tray_m: config.rack.tray_height_m,
+            desk_m: config.desk.height_m,
+        }
+    }
+
+    fn put(self, config: &mut Config) {
+        config.rack.tray_height_m = self.tray_m;
+        config.desk.height_m = self.desk_m;
+    }
+
+    /// Those that are set, in proportion to the eyes' height, but never so low that a short arm does not reach down.
+    fn of(config: &Config, set: Self, eye_m: f64, reach_m: f64) -> Self {
         let share = eye_m / config.calibration.eye_height_m;
         let shoulder = SHOULDER_SHARE * eye_m;
         let margin = config.walking.furniture_margin_m;
@@ -145,12 +171,8 @@ impl Fitted {
             .iter()
             .map(|ball| ball.diameter_m)
             .fold(0.0, f64::max);
-        let RackConfig { tray_height_m, .. } = config.rack;
-        let DeskConfig {
-            height_m, depth_m, ..
-        } = config.desk;
-        let tray = (tray_height_m * share).max(lowest(margin + 0.5 * widest) - widest);
-        let desk = (height_m * share).max(lowest(margin + 0.5 * depth_m));
+        let tray = (set.tray_m * share).max(lowest(margin + 0.5 * widest) - widest);
+        let desk = (set.desk_m * share).max(lowest(margin + 0.5 * config.desk.depth_m));
         let whole = |height: f64, [low, high]: [f64; 2]| {
             (height.clamp(low, high) * PER_METRE).round() / PER_METRE
         };
@@ -170,7 +192,8 @@ mod tests {
     fn furniture_follows_the_eyes_and_comes_up_to_a_short_arm() {
         let config = default_config();
         let fitted = |eye, reach| {
-            let Fitted { tray_m, desk_m } = Fitted::of(&config, eye, reach);
+            let Fitted { tray_m, desk_m } =
+                Fitted::of(&config, Fitted::as_set(&config), eye, reach);
             (tray_m, desk_m)
         };
         assert_eq!(

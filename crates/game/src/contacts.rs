@@ -49,8 +49,11 @@ impl Game {
         &self.contacts
     }
 
-    /// The balls that roll now; looks at every thing that could carry one, so ask only where somebody listens.
+    /// The balls that roll now, none in a pause; looks at every thing that could carry one, so ask only where somebody listens.
     pub fn rolling(&self) -> Vec<RollingBall> {
+        if self.is_paused {
+            return Vec::new();
+        }
         let balls = self.room.balls.iter().filter_map(|entity| {
             let ball: Ball = self.room.get(*entity);
             let body = self.room.body(*entity);

@@ -67,10 +67,11 @@ impl Game {
     /// # Errors
     /// When something differs that a session has once, or physics refuses a setting; nothing has changed then.
     pub fn lay_out(&mut self, config: &Config) -> Result<(), GameError> {
-        if let Some(setting) = differing(config, &self.conditions.lobby) {
+        let config = self.within_reach(config);
+        if let Some(setting) = differing(&config, &self.conditions.lobby) {
             return Err(GameError::DifferingCondition(setting));
         }
-        let room = Room::new(config)?;
+        let room = Room::new(&config)?;
         self.enter(room);
         self.playing = None;
         Ok(())

@@ -108,7 +108,7 @@ impl Game {
     fn show_holes_under(&mut self, ball: Entity, hand: Pose) {
         let body = self.room.body(ball).pose();
         let mut shown: Shown = self.room.get(ball);
-        let world_from_model = holes::world_from_model(&hand, body.position);
+        let world_from_model = holes::world_from_model(&hand, self.hand.is_left, body.position);
         shown.body_from_model.rotation = body.rotation.inverse() * world_from_model;
         self.room.set(ball, shown);
     }

@@ -27,6 +27,8 @@ pub(crate) struct Hand {
     pub is_closed: bool,
     /// The trigger, from 0 to 1, for the picture.
     pub trigger: f64,
+    /// It is a left one, for the picture.
+    pub is_left: bool,
     pub held: Option<Held>,
     /// What it let go and has not yet drawn clear of: the two pass through each other.
     pub let_go: Option<hecs::Entity>,
@@ -64,6 +66,7 @@ impl Game {
             });
         }
         self.hand.trigger = input.trigger;
+        self.hand.is_left = input.is_left;
         let rig = self.world_from_tracking;
         let before = self.hand.now;
         let now = hand.map(|tracked| rig * tracked.pose);

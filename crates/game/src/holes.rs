@@ -7,7 +7,7 @@ use physics::Pose;
 /// the surface, that of a middling hand.
 pub const HALF_SPAN: f64 = 0.4;
 
-/// Where the fingers enter a ball under the palm, from the ball's centre, in the hand's frame (x right, y from the palm's back,
+/// Where the fingers enter a ball under the palm, from the ball's centre, in a right hand's frame (x right, y from the palm's back,
 /// -z along the fingers): between middle and ring finger, and at the thumb.
 pub const FINGERS_IN_HAND: DVec3 = DVec3::new(0.0, 0.769, -0.639);
 /// See [`FINGERS_IN_HAND`].
@@ -29,12 +29,15 @@ pub fn hand_on_ball(hand: &Pose, ball_centre: DVec3, ball_radius: f64, palm: f64
 
 /// Rotation of the ball's model, whose finger holes lie at `HALF_SPAN` above its +x and whose thumb hole at as much below, that
 /// brings the holes under the fingers of the hand as [`hand_on_ball`] has it.
-pub(crate) fn world_from_model(hand: &Pose, ball_centre: DVec3) -> DQuat {
+pub(crate) fn world_from_model(hand: &Pose, is_left: bool, ball_centre: DVec3) -> DQuat {
     let drawn = hand_on_ball(hand, ball_centre, 1.0, 0.0);
-    drawn.rotation * hand_from_model()
+    drawn.rotation * hand_from_model(is_left)
 }
 
-fn hand_from_model() -> DQuat {
+/// A left hand is a right one's mirror image; the ball's holes are the same on both sides of the plane through fingers and thumb.
+fn hand_from_model(is_left: bool) -> DQuat {
+    let side = if is_left { -1.0 } else { 1.0 };
+    let in_hand = |right: DVec3| DVec3::new(side * right.x, right.y, right.z);
     let frame = |fingers: DVec3, thumb: DVec3| {
         let out = (fingers + thumb).try_normalize().unwrap_or(DVec3::Y);
         let across = fingers.cross(thumb).try_normalize().unwrap_or(DVec3::X);
@@ -42,7 +45,7 @@ fn hand_from_model() -> DQuat {
     };
     let (sin, cos) = DVec2::from_angle(HALF_SPAN).yx().into();
     let model = frame(DVec3::new(cos, sin, 0.0), DVec3::new(cos, -sin, 0.0));
-    let hand = frame(FINGERS_IN_HAND, THUMB_IN_HAND);
+    let hand = frame(in_hand(FINGERS_IN_HAND), in_hand(THUMB_IN_HAND));
     DQuat::from_mat3(&(hand * model.transpose()))
 }
 
@@ -62,13 +65,15 @@ mod tests {
         let ahead = drawn.rotation * DVec3::NEG_Z;
         // As far as a palm on the ball's far side can point where the hand points: 25 degrees of it are the ball's slope.
         assert!(ahead.dot(hand.rotation * DVec3::NEG_Z) > 0.8, "{ahead}");
-        let model = world_from_model(&hand, centre);
         let (sin, cos) = DVec2::from_angle(HALF_SPAN).yx().into();
-        for (hole, finger) in [(sin, FINGERS_IN_HAND), (-sin, THUMB_IN_HAND)] {
-            let hole = model * DVec3::new(cos, hole, 0.0);
-            let finger = drawn.rotation * finger;
-            // The fingers' span is that of the holes to a millimetre and a half on the surface.
-            assert!(hole.distance(finger) < 0.014, "{hole} {finger}");
+        for (is_left, mirror) in [(false, DVec3::ONE), (true, DVec3::new(-1.0, 1.0, 1.0))] {
+            let model = world_from_model(&hand, is_left, centre);
+            for (hole, finger) in [(sin, FINGERS_IN_HAND), (-sin, THUMB_IN_HAND)] {
+                let hole = model * DVec3::new(cos, hole, 0.0);
+                let finger = drawn.rotation * (mirror * finger);
+                // The fingers' span is that of the holes to a millimetre and a half on the surface.
+                assert!(hole.distance(finger) < 0.014, "{is_left}: {hole} {finger}");
+            }
         }
     }
 }

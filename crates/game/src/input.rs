@@ -110,6 +110,9 @@ pub struct Input {
     /// A wish to be back at the start, facing the lane.
     #[serde(default)]
     pub recentre: bool,
+    /// Whether the hand is a left one: it is drawn as one, and a ball lies in it as in one.
+    #[serde(default)]
+    pub is_left: bool,
     /// Physics steps that this frame advances.
     pub steps: u32,
     /// When the trigger last changed, if it did since the frame before and the device measured when.

@@ -57,7 +57,7 @@ pub use observe::{BallSeen, ButtonSeen, Observation, Phase, PinSeen, ThrowSeen};
 pub use score::{Delivery, PINS, Roll, ScoreError, ScoreSheet};
 pub use visible::{Model, Visible};
 
-use calibrate::HeldOut;
+use calibrate::{Fitted, HeldOut};
 use contest::Pending;
 use hand::Hand;
 use room::Room;
@@ -113,6 +113,8 @@ pub struct Game {
     throws_over: u32,
     is_paused: bool,
     held_out: Option<HeldOut>,
+    /// Heights of rack and desk before anybody was measured.
+    furniture: Fitted,
     pressed: Vec<Button>,
     keys: [bool; 2],
     impacts: Vec<Contact>,
@@ -181,6 +183,7 @@ impl Game {
         let world_from_tracking = Pose::from_position(DVec3::new(start.x_m, 0.0, start.z_m));
         Ok(Self {
             room: Room::new(&conditions.lobby)?,
+            furniture: Fitted::as_set(&conditions.lobby),
             conditions,
             frames,
             steps: 0,

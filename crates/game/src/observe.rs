@@ -230,6 +230,11 @@ impl Game {
         self.hand.trigger.clamp(0.0, 1.0)
     }
 
+    /// Whether the hand that plays is a left one.
+    pub fn hand_is_left(&self) -> bool {
+        self.hand.is_left
+    }
+
     /// Everything that can be seen now.
     pub fn visible(&self) -> Vec<Visible> {
         self.visible_at(1.0)

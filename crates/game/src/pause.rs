@@ -27,6 +27,7 @@ impl Game {
             locked: input.locked,
             recentred: input.recentred,
             recentre: input.recentre,
+            is_left: input.is_left,
             paused: true,
             ..Input::default()
         }

@@ -42,6 +42,22 @@ fn input_follows_the_hand_that_closes_and_stays_with_what_it_holds() {
 }
 
 #[test]
+fn the_game_is_told_which_hand_plays() {
+    let mut participant = Participant::new(720.0);
+    let mut is_left = |left, right| {
+        let input = participant.input(&readings(left, right), 0, 0.01, false);
+        input.is_left
+    };
+    assert!(!is_left(0.0, 0.0));
+    is_left(0.9, 0.0);
+    assert!(is_left(0.9, 0.0) && is_left(0.0, 0.0));
+    is_left(0.0, 0.9);
+    assert!(!is_left(0.0, 0.9));
+    participant.input(&readings(0.9, 0.0), 0, 0.01, false);
+    assert!(participant.pause(&readings(0.9, 0.0)).is_left);
+}
+
+#[test]
 fn buttons_of_the_other_hand_choose_and_those_of_the_throwing_hand_walk() {
     let mut participant = Participant::new(720.0);
     let mut both = readings(0.0, 0.0);
@@ -168,7 +184,7 @@ fn a_bare_hand_holds_by_its_fist_or_by_a_pinch() {
     assert_eq!(closed(0.9, 0.0), (Some(0.25), 0.9, None));
     assert_eq!(closed(0.2, 0.8), (Some(0.25), 0.8, None));
     let fingers = participant.fingers(&readings).expect("it is bare");
-    assert_eq!(fingers, (Fingers::tracked(&[[0.25; 3]; 5]), false));
+    assert_eq!(fingers, Fingers::tracked(&[[0.25; 3]; 5]));
 }
 
 /// A hand that is lost for a while and comes back as what it was has not changed.

@@ -1,7 +1,7 @@
 //! What helps a newcomer, and that none of it reaches the game: measures of the body, glow, practice.
 
 use game::{Button, EventKind, Game, Model, Phase};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 use crate::support::{Player, Swing, conditions};
 
@@ -75,6 +75,37 @@ fn one_gesture_brings_rack_and_desk_within_reach() {
     }
     let head = player.game.head_pose_world().unwrap().position;
     assert!((head.y - 1.86).abs() < 1e-9, "nobody is lifted who stands");
+}
+
+/// Somebody who crouches to reach a ball on the rack, and misses it, is not lifted for the rest of the session.
+#[test]
+fn who_bends_down_with_a_closed_hand_is_not_measured() {
+    let mut player = Player::new(conditions(&[]), 1);
+    player.head.rotation = DQuat::from_rotation_x(-0.7);
+    gesture(&mut player, 1.2, 0.6);
+    assert!(player.last(measured).is_none(), "bent over something");
+    player.head.rotation = DQuat::from_rotation_x(-0.4);
+    gesture(&mut player, 1.2, 0.6);
+    assert!(player.last(measured).is_some(), "looking ahead");
+}
+
+/// Measured twice is measured once; and an alley that is laid out anew, for a pair of throws, keeps what was placed.
+#[test]
+fn what_was_placed_stays_through_another_gesture_and_another_room() {
+    let mut player = Player::new(conditions(&[]), 1);
+    gesture(&mut player, 1.86, 0.6);
+    let first = player.last(measured).expect("measured");
+    player.wait(0.5);
+    gesture(&mut player, 1.86, 0.6);
+    assert_eq!(player.count(|kind| measured(kind).is_some()), 2);
+    let again = player.last(measured).expect("measured");
+    assert_eq!(again[3..], first[3..], "tray and desk");
+    let config = conditions(&["objects.elasticity=0.5"]).lobby;
+    player.game.lay_out(&config).expect("the same room");
+    let ball = player.game.observe().balls[0];
+    let tray = ball.position.y - ball.radius;
+    assert!((tray - first[3]).abs() < 0.002, "{tray}");
+    assert_eq!(player.game.config().objects.elasticity, 0.5);
 }
 
 #[test]
