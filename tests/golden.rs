@@ -1,6 +1,9 @@
+/// What comes and goes: glow, signs, fence, vignette, hands, machine.
+mod things;
+
 use std::path::{Path, PathBuf};
 
-use bowling_app::convert::{self, HandShape, Stock};
+use bowling_app::convert::{self, HandLook, HandShape, Stock};
 use bowling_app::look::{Stage, places};
 use game::{Conditions, Game, Model, Visible};
 use glam::{DQuat, DVec3};
@@ -140,7 +143,8 @@ fn draw(state: &State, settings: RendererSettings) -> [RgbImage; 2] {
     let mut renderer = Renderer::new(&gpu, settings).expect("plain settings");
     let stock =
         Stock::load(&mut renderer, root, &conditions().lobby).expect("the project's assets");
-    let scene = convert::scene(&state.visible, &stock, HandShape::Closing(0.0));
+    let look = HandLook::right(HandShape::Closing(0.0));
+    let scene = convert::scene(&state.visible, &stock, look);
     let display = &conditions().lobby.display;
     let eyes = match state.head {
         Some(head) => convert::eyes(&head, display),

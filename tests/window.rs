@@ -5,6 +5,8 @@
 
 /// The experimenter's window beside the participant's.
 mod experimenter;
+/// Ten frames, from a cold start to the final score.
+mod whole_game;
 
 use std::f64::consts::FRAC_PI_2;
 use std::fs::File;
@@ -130,29 +132,41 @@ impl Person {
         }
     }
 
-    /// Bowls until the game is over, then ends the session; keeps what was seen after a throw in `folder`.
+    /// Bowls until the game is over; keeps what was seen after a throw in `folder`.
     fn play_to_the_end(&mut self, folder: &Path) {
-        let is_rolled = |kind: &EventKind| matches!(kind, EventKind::Rolled { .. });
-        loop {
+        let is_over = |kind: &EventKind| matches!(kind, EventKind::GameOver { .. });
+        let games_before = self.count(is_over);
+        while self.count(is_over) == games_before {
+            self.eyes.look_for("the pins to be ready", |game, _| {
+                (game.phase() == Phase::Ready).then_some(())
+            });
             self.take_ball();
             self.bowl();
-            let rolled = self.count(is_rolled);
-            self.eyes.look_for("the throw to be scored", |_, seen| {
-                let now = seen.iter().filter(|kind| is_rolled(kind)).count();
-                (now > rolled).then_some(())
-            });
+            self.wait_for_pins();
             let picture = self.screen.shot();
             picture
                 .save(folder.join("after-throw.png"))
                 .expect("the picture can be kept");
-            if self.count(|kind| matches!(kind, EventKind::GameOver { .. })) > 0 {
-                break;
-            }
-            self.eyes.look_for("the pins to be ready", |game, _| {
-                (game.phase() == Phase::Ready).then_some(())
-            });
         }
-        self.screen.act(&["key", "Escape"]);
+    }
+
+    /// Until the pins of a ball that was let go are counted. One that does not reach the lane counts for nothing, and is seen on the
+    /// rack again: then another is taken.
+    fn wait_for_pins(&mut self) {
+        self.eyes
+            .look_for("the pins to be counted, or the ball back", |game, seen| {
+                let last = |is_it: &dyn Fn(&EventKind) -> bool| seen.iter().rposition(is_it);
+                let let_go = last(&|kind| matches!(kind, EventKind::Released(_)));
+                let counted = last(&|kind| matches!(kind, EventKind::Settled { .. }));
+                let Some(EventKind::Released(release)) = let_go.map(|at| &seen[at]) else {
+                    panic!("a ball was let go");
+                };
+                let balls = game.observe().balls;
+                let is_back = balls
+                    .iter()
+                    .any(|ball| Model::Ball(ball.index) == release.model && ball.is_on_rack);
+                (counted > let_go || is_back).then_some(())
+            });
     }
 
     fn heading(&mut self) -> f64 {
@@ -281,8 +295,26 @@ impl Person {
         );
     }
 
-    /// Takes a ball from the rack: walks up to it with the hand raised, reaches down from above, closes.
+    /// Takes a ball from the rack; a hand that closes on nothing is opened, and tries again.
     fn take_ball(&mut self) {
+        for _ in 0..5 {
+            self.reach_for_ball();
+            self.screen.act(&["mousedown", "1"]);
+            let closed = self.eyes.game.time() + 0.5;
+            let is_held = |game: &Game| matches!(game.held(), Some(Model::Ball(_)));
+            let is_held = self.eyes.look_for("a ball in the hand", |game, _| {
+                (is_held(game) || game.time() > closed).then(|| is_held(game))
+            });
+            if is_held {
+                return;
+            }
+            self.screen.act(&["mouseup", "1"]);
+        }
+        panic!("five balls slip out of the hand");
+    }
+
+    /// Walks up to a ball with the hand raised and reaches down from above, until it shows that it could be taken.
+    fn reach_for_ball(&mut self) {
         let ball = self.eyes.look_for("a ball on the rack", |game, _| {
             game.observe()
                 .balls
@@ -299,16 +331,11 @@ impl Person {
         let over = |height: f64| ball.position + DVec3::Y * (ball.radius + height);
         let above = over(0.25);
         self.reach(above, 0.3, |_, hand| hand.distance(above) < 0.1);
-        // Down, until the ball shows that the hand could take it.
         let glows = |game: &Game| {
             let mut seen = game.visible().into_iter();
             seen.any(|it| matches!(it.model, Model::Ball(_)) && it.is_highlighted)
         };
         self.reach(over(0.06), 0.05, |game, _| glows(game));
-        self.screen.act(&["mousedown", "1"]);
-        self.eyes.look_for("a ball in the hand", |game, _| {
-            matches!(game.held(), Some(Model::Ball(_))).then_some(())
-        });
     }
 
     /// Carries the ball to the foul line with the arm over the lane's middle, swings and lets go.
@@ -470,6 +497,7 @@ fn a_person_bowls_a_frame_with_mouse_and_keys() {
     person.screen.act(&["key", "F1"]);
 
     person.play_to_the_end(&folder);
+    person.screen.act(&["key", "Escape"]);
     let output = ended(program);
     let released = person.eyes.seen.iter().find_map(|kind| match kind {
         EventKind::Released(release) => Some(release.speed),

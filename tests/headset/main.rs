@@ -37,3 +37,5 @@ mod start;
 mod study;
 /// The validation layers watch every program of these tests, and are watched.
 mod validation;
+/// The panel at the wrist, and the fence where the tracked space ends.
+mod wrist;

@@ -21,24 +21,29 @@ const BESIDE_RACK: [&str; 4] = ["--set", "start.x_m=0.75", "--set", "start.z_m=2
 /// Starts the program beside the rack, in a game of one frame that is recorded into `folder`. The scene is the one that is
 /// quickly drawn, so that a busy machine without a graphics card makes enough pictures of a swing.
 pub fn start(service: &Service, folder: &Path) -> Client {
-    start_scene(service, folder, "test", &[])
+    start_with(service, folder, "test", &[], &[])
 }
 
 /// As [`start`], in the alley with all that it shows, and with more in the program's environment.
 pub fn start_alley(service: &Service, folder: &Path, environment: &[(&str, &OsStr)]) -> Client {
-    start_scene(service, folder, "alley", environment)
+    start_with(service, folder, "alley", environment, &[])
 }
 
-fn start_scene(
+/// As [`start`], in another scene, with more in the program's environment and other settings.
+pub fn start_with(
     service: &Service,
     folder: &Path,
     scene: &str,
     environment: &[(&str, &OsStr)],
+    settings: &[&str],
 ) -> Client {
     let folder = folder.to_str().expect("a plain path");
     let mut arguments = vec!["play", "--device", "headset", "--frames", "1", "--no-video"];
     arguments.extend(["--scene", scene, "--out", folder]);
     arguments.extend(BESIDE_RACK);
+    for setting in settings {
+        arguments.extend(["--set", setting]);
+    }
     Client::start_in(service, &arguments, environment)
 }
 
@@ -321,6 +326,7 @@ fn a_release_is_the_swings_own_at_every_rate() {
             }
             .throw(&mut room, hand);
             agrees(&room, truth);
+            assert_eq!(room.input.is_left, hand == Hand::Left, "it is seen as such");
         }
         // The remote driver tells one pose for all times, so that it cannot tell a program that asks for the trigger's own time
         // from one that does not; the game's tests do. Here the program must have said when the trigger opened.
