@@ -125,30 +125,16 @@ fn fence_pixels(picture: &RgbImage) -> usize {
     picture.pixels().filter(|pixel| is_fence(pixel.0)).count()
 }
 
-/// Pixels that show a text's ground as it comes to the screen: of the wrist's buttons before and while they are looked at.
-fn panel_pixels(picture: &RgbImage) -> usize {
-    let near = |pixel: [u8; 3], ground: [u8; 3]| {
-        let off = pixel.into_iter().zip(ground).map(|(a, b)| a.abs_diff(b));
-        off.max() <= Some(6)
-    };
-    let grounds = [[74, 81, 96], [55, 149, 111]];
-    let pixels = picture.pixels().map(|pixel| pixel.0);
-    pixels
-        .filter(|pixel| grounds.iter().any(|ground| near(*pixel, *ground)))
-        .count()
-}
-
 /// The runtime of these tests tells no bounds, as the test below has it: those of the settings stand for them.
 #[test]
-fn fence_and_panel_are_seen_when_somebody_comes_near_and_looks() {
+fn the_fence_is_seen_when_somebody_comes_near_the_edge() {
     let Some(runtime) = runtime() else { return };
     let service = Service::start(&runtime, Compositor::Xvfb { hz: 45 });
     let out = tempfile::tempdir().expect("a temporary folder");
     let folder = out.path().join("session");
     let screen = service.screen();
     let display = [("DISPLAY", OsStr::new(screen.display()))];
-    // Where faces have one colour no text can be read.
-    let space = ["comfort.space_m=[1.6, 1.6]", "shows.materials=true"];
+    let space = ["comfort.space_m=[1.6, 1.6]"];
     let mut client = start_with(&service, &folder, "test", &display, &space);
     let mut room = Room::enter(&service, &mut client, &folder);
     let window = screen.act(&["search", "--sync", "--name", "what the participant sees"]);
@@ -161,19 +147,12 @@ fn fence_and_panel_are_seen_when_somebody_comes_near_and_looks() {
             holds(&picture).then_some(())
         });
         let picture = screen.shot();
-        let (fence, panel) = (fence_pixels(&picture), panel_pixels(&picture));
-        if let Some(folder) = std::env::var_os("BOWLING_KEEP_PICTURES") {
-            let file = std::path::Path::new(&folder).join(format!("{what}.png"));
-            picture.save(file).expect("it can be kept");
-        }
-        assert!(
-            found.is_some(),
-            "{what}: {fence} of the fence, {panel} of the panel"
-        );
+        let fence = fence_pixels(&picture);
+        assert!(found.is_some(), "{what}: {fence} pixels of the fence");
     };
     let is_room = |picture: &RgbImage| crate::shared::screen::colours(picture) > 12;
     seen(&mut room, "in the middle", &|picture| {
-        is_room(picture) && fence_pixels(picture) == 0 && panel_pixels(picture) < 40
+        is_room(picture) && fence_pixels(picture) == 0
     });
     // To the edge at the right, and facing it.
     room.packet.head = looking(DVec3::new(0.7, 1.6, 0.0), DVec3::new(2.0, 1.4, 0.0));
@@ -183,9 +162,8 @@ fn fence_and_panel_are_seen_when_somebody_comes_near_and_looks() {
     });
     room.packet.head = Pose::from_position(DVec3::Y * 1.6);
     room.send();
-    look_at_button(&mut room, TO_THE_START);
-    seen(&mut room, "at the wrist", &|picture| {
-        panel_pixels(picture) > 400 && fence_pixels(picture) == 0
+    seen(&mut room, "in the middle again", &|picture| {
+        is_room(picture) && fence_pixels(picture) == 0
     });
     let (status, said) = client.finish();
     assert!(status.success(), "{said}");
