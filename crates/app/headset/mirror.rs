@@ -30,6 +30,8 @@ use crate::study::experimenter;
 
 /// Time between two pictures: enough to follow, little beside the headset's.
 const PERIOD: Duration = Duration::from_millis(33);
+/// The same while the headset misses pictures, for which the same card and processor draw.
+const YIELDING: Duration = Duration::from_millis(250);
 
 /// Stays until the headset's thread has ended; with a window where there is a display. `events` is the window system, where a window was
 /// there before.
@@ -55,6 +57,7 @@ pub fn stay(
         stage: None,
         is_given_up: false,
         due: Instant::now(),
+        missed: 0,
         outcome: None,
     };
     // A fault of the window system or its driver ends the mirror, and must not end the participant's game.
@@ -82,6 +85,11 @@ struct Stage {
     signs: SignStock,
 }
 
+/// Time to the next picture, while the headset's missed ones go from one number to the other.
+fn period(before: u64, missed: u64) -> Duration {
+    if missed > before { YIELDING } else { PERIOD }
+}
+
 struct Mirror {
     watched: Watched,
     shared: Arc<Shared>,
@@ -91,6 +99,8 @@ struct Mirror {
     /// The window could not be opened, or drawing into it failed: the participant plays on without.
     is_given_up: bool,
     due: Instant,
+    /// Pictures that the headset had missed when the last one here was due.
+    missed: u64,
     outcome: Option<Result<()>>,
 }
 
@@ -250,11 +260,23 @@ impl ApplicationHandler for Mirror {
         }
         let now = Instant::now();
         if now >= self.due {
-            self.due = now + PERIOD;
+            let missed = self.shared.missed();
+            self.due = now + period(std::mem::replace(&mut self.missed, missed), missed);
             if let Some(stage) = &self.stage {
                 stage.target.window().request_redraw();
             }
         }
         events.set_control_flow(ControlFlow::WaitUntil(self.due));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mirror_draws_less_while_the_headset_misses_pictures() {
+        assert_eq!(period(7, 7), PERIOD);
+        assert_eq!(period(7, 8), YIELDING);
     }
 }

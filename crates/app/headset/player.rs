@@ -297,6 +297,7 @@ impl Player {
         scene.instances.extend(panel);
         let simulated = frame.woken().elapsed();
         let timing = self.times.of(&frame, simulated);
+        self.shared.miss(timing.missed());
         let is_shown = if frame.should_render() {
             let rig = (rig.position.as_vec3(), rig.rotation.as_quat());
             let views = headset

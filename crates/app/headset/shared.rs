@@ -39,6 +39,8 @@ pub struct Shared {
     fingers: Mutex<Option<Fingers>>,
     /// The experimenter's keys for Red and Blue: pressed since the last frame.
     keys: [AtomicBool; 2],
+    /// Pictures that the headset missed.
+    missed: AtomicU64,
     /// Says what the experimenter should know.
     pub voice: Voice,
     pub stop: Arc<AtomicBool>,
@@ -60,6 +62,7 @@ impl Shared {
             beside: Mutex::default(),
             fingers: Mutex::new(None),
             keys: Default::default(),
+            missed: AtomicU64::new(0),
             voice: Voice::new()?,
             stop,
         })
@@ -98,6 +101,16 @@ impl Shared {
 
     pub fn take_press(&self, button: Button) -> bool {
         self.keys[button as usize].swap(false, Ordering::Relaxed)
+    }
+
+    /// The headset missed so many pictures before this one.
+    pub fn miss(&self, pictures: u64) {
+        self.missed.fetch_add(pictures, Ordering::Relaxed);
+    }
+
+    /// Pictures that the headset has missed so far.
+    pub fn missed(&self) -> u64 {
+        self.missed.load(Ordering::Relaxed)
     }
 
     /// Tells the mirror what the screen over the lane shows.
