@@ -101,11 +101,11 @@ impl Setup {
         .expect("the cases' settings can run")
     }
 
-    /// The paper's laws use products, so each object has the root; Coulomb's law reads the world's pair.
+    /// The paper's laws use products, so each object has the root; Coulomb's law reads the world's pair, whose mu may be above 1.
     fn material(&self) -> Material {
         Material {
             elasticity: self.elasticity.sqrt(),
-            friction_rate: self.friction.sqrt(),
+            friction_rate: self.friction.sqrt().min(1.0),
             surface: Surface::default(),
         }
     }
