@@ -184,17 +184,25 @@ impl Session {
         count(self.game.events(), &mut self.started, &mut self.games_over);
         for event in self.game.events() {
             self.journal.event(event)?;
-            let reached = self
-                .course
-                .as_mut()
-                .and_then(|course| course.hear(&event.kind));
-            if let Some(place) = reached {
-                let at_s = now(self.clock, &self.game);
-                self.journal.study(&Note::Reached { place, at_s })?;
-            }
         }
+        self.hear()?;
         if let Some(recording) = &mut self.recording {
             recording.frame(&self.game, &input)?;
+        }
+        Ok(())
+    }
+
+    /// Tells the course what happened, and notes where the session has got to by it: behind all events, so that any line behind them
+    /// shows that none is missing.
+    fn hear(&mut self) -> Result<()> {
+        let Some(course) = &mut self.course else {
+            return Ok(());
+        };
+        let at_s = now(self.clock, &self.game);
+        for event in self.game.events() {
+            if let Some(place) = course.hear(&event.kind) {
+                self.journal.study(&Note::Reached { place, at_s })?;
+            }
         }
         Ok(())
     }

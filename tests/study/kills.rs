@@ -1,13 +1,18 @@
 //! Programs that are killed, and two programs on one study.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use experiment::random::SplitMix64;
+use serde_json::Value;
 
-use super::{begin, entries, go_on, journals_of, new_study, refusal, said, text, whole_lines};
+use super::{
+    begin, copy, entries, go_on, journals, journals_of, new_study, refusal, said, simulated, text,
+    whole_lines,
+};
 
 #[test]
 fn two_programs_do_not_share_a_study() {
@@ -113,6 +118,35 @@ fn kill_again_and_again(seed: u64, session: u32, most: u32) -> u32 {
     kills
 }
 
+/// A frame scores and ends its game in one instant, and is written line by line: whoever is killed between two of these lines plays the
+/// frame again, instead of a game that is over and was never heard of to end.
+#[test]
+fn a_kill_between_two_events_of_one_instant_loses_neither() {
+    let kind = |entry: &Value| entry["event"]["event"].as_str().map(str::to_owned);
+    let mut torn = BTreeSet::new();
+    let whole = entries(&journals(simulated())[0]);
+    for (line, two) in whole.windows(2).enumerate() {
+        let (Some(first), Some(_)) = (kind(&two[0]), kind(&two[1])) else {
+            continue;
+        };
+        let is_mark = ["settled", "game_started", "frame_scored", "game_over"];
+        if !is_mark.contains(&&*first) || !torn.insert(first.clone()) {
+            continue;
+        }
+        let study = copy(&format!("torn-{first}"));
+        let journal = journals(&study).remove(0);
+        let content = fs::read_to_string(&journal).expect("text");
+        let kept: String = content.split_inclusive('\n').take(line + 1).collect();
+        fs::write(&journal, kept).expect("writable");
+        said(&["study", "resume", text(&study), "--device", "script"]);
+        let listed = said(&["study", "status", text(&study)]);
+        assert_eq!(listed.matches("  complete").count(), 2, "{first}: {listed}");
+        let replayed = said(&["replay", text(journal.parent().expect("a folder"))]);
+        assert!(replayed.contains("agree."), "{first}: {replayed}");
+    }
+    assert!(torn.contains("frame_scored"), "{torn:?}");
+}
+
 /// Every journal that goes on begins where the one before it had its last complete frame, game or training throw.
 fn resumes_at_the_last_frame(study: &Path, context: &str) {
     let folder = journals_of(study)
@@ -141,13 +175,18 @@ fn resumes_at_the_last_frame(study: &Path, context: &str) {
         assert_eq!(begins, mark, "{context}: part {number}");
         let mut inputs = begins;
         let mut games = 0;
+        // Events are written one by one: a mark counts once something else follows them.
+        let mut reached = mark;
         for entry in &entries {
+            if entry.get("event").is_none() {
+                mark = reached;
+            }
             inputs += u64::from(entry.get("input").is_some());
             let kind = entry["event"]["event"].as_str().unwrap_or_default();
             games += u32::from(kind == "game_started");
             let is_training = kind == "settled" && begins == 0 && games == 0;
             if is_training || ["game_started", "frame_scored", "game_over"].contains(&kind) {
-                mark = inputs;
+                reached = inputs;
             }
         }
     }

@@ -45,6 +45,8 @@ pub struct Story {
     pub torn: Option<Torn>,
     /// Number of the last whole line.
     pub lines: usize,
+    /// How many inputs have all their events: a crash may have come between two events of the last one.
+    pub whole: usize,
 }
 
 /// Something that the device said of itself.
@@ -131,6 +133,7 @@ fn prepend_earlier(path: &Path, story: &mut Story) -> Result<()> {
         DeviceLine { at, ..line }
     }));
     story.device = device;
+    story.whole += count;
     Ok(())
 }
 
@@ -188,11 +191,16 @@ fn tell(lines: &mut Lines) -> Result<Story> {
         end: None,
         torn: None,
         lines: 1,
+        whole: 0,
     };
     let mut time_s = None;
     while let Some(entry) = next_entry(lines)? {
         if story.end.is_some() {
             bail!("something follows the end of the session");
+        }
+        // Events are written right behind their input, and all else behind them.
+        if !matches!(entry, Entry::Event(_)) {
+            story.whole = story.inputs.len();
         }
         match entry {
             Entry::Header(_) => bail!("a second header"),

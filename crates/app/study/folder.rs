@@ -111,7 +111,8 @@ impl Progress {
         !self.protocol.is_over()
     }
 
-    /// Cuts the story behind the last complete bowling frame, game or training throw, and says where that is.
+    /// Cuts the story behind the last complete bowling frame, game or training throw, and says where that is. One of whose events
+    /// some were not written any more is not complete: the session would go on as if they had never happened.
     ///
     /// # Errors
     /// When the settings are not there, or the game cannot be set up with them.
@@ -122,7 +123,9 @@ impl Progress {
             Some("settled") => self.protocol.played().is_empty(),
             _ => false,
         };
-        let marks = self.story.events.iter().filter(|(_, event)| is_mark(event));
+        let whole = self.story.whole;
+        let marks = self.story.events.iter();
+        let marks = marks.filter(|(at, event)| *at < whole && is_mark(event));
         let count = marks.map(|(at, _)| at + 1).max().unwrap_or(0);
         self.story.inputs.truncate(count);
         self.story.events.retain(|(at, _)| *at < count);
