@@ -16,7 +16,7 @@ use support::*;
 const PINNED: [(Response, f64, u64); 3] = [
     (Response::UnoSlater, 90.0, 0xa1af_db57_3b9b_b4dc),
     (Response::Guarded, 240.0, 0xa371_dc07_e1d7_237f),
-    (Response::Coulomb, 120.0, 0xb58b_888e_d963_b6a2),
+    (Response::Coulomb, 120.0, 0x2559_e2fc_e9ef_1670),
 ];
 /// Simulated time [s].
 const MINUTE: u32 = 60;

@@ -144,12 +144,7 @@ fn pins_that_are_hulls_stand_awake_under_every_law() {
             let (mut world, ids) = awake_rack(response, step_hz, (0.49, 0.49), &shape);
             let (drift, lean) = watch(&mut world, &ids, 20.0);
             let what = format!("{corners} corners, {response:?}, {step_hz} Hz");
-            // In cones what the passes leave over moves them a little before they are still: docs/hard-cases.md.
-            let most = match response {
-                Response::Coulomb => 2.5e-6,
-                _ => 0.0,
-            };
-            assert!(drift <= most, "drift {drift} m, {what}");
+            assert_eq!(drift, 0.0, "{what}");
             assert!(lean <= 1e-3, "tilt {lean} degrees, {what}");
         }
     }

@@ -230,9 +230,11 @@ impl Row {
 
     /// Whether friction at a rate acts on a slip below `slow` [m/s].
     pub fn creeps(&self, all: &[Mover], slow: f64) -> bool {
-        if !matches!(self.friction, Friction::Rate(_)) {
-            return false;
-        }
+        matches!(self.friction, Friction::Rate(_)) && self.is_slow(all, slow)
+    }
+
+    /// Whether it slips at less than `slow` [m/s].
+    pub fn is_slow(&self, all: &[Mover], slow: f64) -> bool {
         let (a, b) = (&all[self.movers.0], &all[self.movers.1]);
         let slip = a.velocity(self.touch.arm_a) - b.velocity(self.touch.arm_b);
         let n = self.touch.normal;
