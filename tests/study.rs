@@ -23,7 +23,7 @@ use std::sync::OnceLock;
 use experiment::journal::Lines;
 use serde_json::Value;
 
-use crate::support::{bowling, fresh_folder};
+use crate::support::{NEW_STUDY, bowling, fresh_folder};
 
 /// The program's output, which has to be a success.
 fn said(arguments: &[&str]) -> String {
@@ -129,25 +129,15 @@ fn new_study(name: &str, frames: &str) -> PathBuf {
 
 /// The same in a folder that is named.
 fn new_study_in(folder: &Path, frames: &str) -> PathBuf {
-    said(&[
-        "study",
-        "new",
-        text(folder),
-        "--subjects",
-        "1",
-        "--frames",
-        frames,
-        "--training",
-        "1",
-        "--laboratory",
-        "a test",
-        "--contact",
-        "nobody",
-        "--withdrawal-until",
-        "2099-12-31",
-        "--retention-until",
-        "2099-12-31",
-    ]);
+    new_study_with(folder, &["--frames", frames, "--training", "1"])
+}
+
+/// A study for one participant, and of what else its plan has.
+fn new_study_with(folder: &Path, plan: &[&str]) -> PathBuf {
+    let mut arguments = vec!["study", "new", text(folder), "--subjects", "1"];
+    arguments.extend(NEW_STUDY);
+    arguments.extend(plan);
+    said(&arguments);
     folder.to_owned()
 }
 
@@ -166,7 +156,15 @@ fn go_on(study: &Path) -> Vec<String> {
 
 /// Starts a scripted session in the background.
 fn begin(command: &[String], study: &Path) -> Child {
-    Command::new(env!("CARGO_BIN_EXE_bowling"))
+    scripted(command, study)
+        .spawn()
+        .expect("the program starts")
+}
+
+/// What begins, or takes up, a scripted session.
+fn scripted(command: &[String], study: &Path) -> Command {
+    let mut program = Command::new(env!("CARGO_BIN_EXE_bowling"));
+    program
         .args(["study", &command[0], text(study), "--device", "script"])
         .args(&command[1..])
         .env_remove("DISPLAY")
@@ -174,9 +172,27 @@ fn begin(command: &[String], study: &Path) -> Child {
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .stdin(Stdio::null())
         .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program starts")
+        .stderr(Stdio::piped());
+    program
+}
+
+/// Takes all tables of a study away and has them made anew from its journals: nothing differs.
+fn comes_out_of_its_journals(study: &Path) {
+    let before = files(&study.join("data"));
+    for (name, _) in &before {
+        if !name.starts_with("sourcedata") {
+            fs::remove_file(study.join("data").join(name)).expect("writable");
+        }
+    }
+    said(&["study", "rebuild", text(study)]);
+    let after = files(&study.join("data"));
+    let names = |files: &[(PathBuf, Vec<u8>)]| -> Vec<PathBuf> {
+        files.iter().map(|(name, _)| name.clone()).collect()
+    };
+    assert_eq!(names(&before), names(&after));
+    for (one, other) in before.iter().zip(&after) {
+        assert!(one == other, "{} has changed", one.0.display());
+    }
 }
 
 fn journals_of(study: &Path) -> Vec<PathBuf> {

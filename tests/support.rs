@@ -13,6 +13,18 @@ pub fn fresh_folder(name: &str) -> PathBuf {
     folder
 }
 
+/// What every new study has to be told of who answers for it.
+pub const NEW_STUDY: [&str; 8] = [
+    "--laboratory",
+    "a test",
+    "--contact",
+    "nobody",
+    "--withdrawal-until",
+    "2099-12-31",
+    "--retention-until",
+    "2099-12-31",
+];
+
 /// Runs the program to its end, without a screen.
 pub fn bowling(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_bowling"))

@@ -24,6 +24,17 @@ pub enum Choice {
     ScriptOffscreen,
 }
 
+impl Choice {
+    /// Who bowls, as a journal has it.
+    pub fn device(self) -> &'static str {
+        match self {
+            Self::Headset => "headset",
+            Self::DeskWindow => "desk",
+            Self::ScriptWindow | Self::ScriptOffscreen => "script",
+        }
+    }
+}
+
 /// What the machine offers, found out by the caller so that the choice can be tested.
 #[derive(Debug, Clone)]
 pub struct Machine {

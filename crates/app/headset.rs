@@ -72,8 +72,9 @@ pub fn run(
     let words = Words::load(root, &config)?;
     let (scribe, last_word) = Scribe::begin()?;
     let stage = {
-        let (scribe, root, config) = (scribe.clone(), root.to_owned(), config.clone());
-        let open = move || Stage::open(found, settings, &scribe, &root, &config);
+        let (scribe, words) = (scribe.clone(), words.clone());
+        let (root, config) = (root.to_owned(), config.clone());
+        let open = move || Stage::open(found, settings, &scribe, &root, &config, &words);
         let is_given_up = || stop.load(Ordering::Relaxed);
         match answered(LONGEST_BEGINNING, is_given_up, open) {
             Some(stage) => stage?,

@@ -53,8 +53,8 @@ impl Scribe {
 
 /// Who paints.
 enum Painter {
-    /// Whoever asks, before they go on.
-    Here(Box<TextPainter>),
+    /// Whoever asks, before they go on; got ready for the first text.
+    Here(Box<(Gpu, Option<TextPainter>)>),
     /// Somebody else, meanwhile.
     Apart(Scribe),
 }
@@ -69,7 +69,7 @@ pub struct Letters<K> {
 impl<K: Send + 'static> Letters<K> {
     /// Painted at once, on this device.
     pub fn here(gpu: &Gpu) -> Self {
-        Self::of(Painter::Here(Box::new(TextPainter::new(gpu))))
+        Self::of(Painter::Here(Box::new((gpu.clone(), None))))
     }
 
     /// Painted meanwhile.
@@ -102,7 +102,10 @@ impl<K: Send + 'static> Letters<K> {
             let _ = tell.send((key, picture));
         };
         match &mut self.painter {
-            Painter::Here(painter) => job(painter),
+            Painter::Here(here) => {
+                let (gpu, painter) = &mut **here;
+                job(painter.get_or_insert_with(|| TextPainter::new(gpu)));
+            }
             Painter::Apart(scribe) => {
                 let sent = scribe.jobs.send(Box::new(job));
                 sent.map_err(|_| anyhow!("the thread that paints texts has ended"))?;

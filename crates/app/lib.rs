@@ -40,6 +40,7 @@ pub mod signs;
 pub mod sound;
 pub mod strike_map;
 pub mod study;
+pub mod trigger;
 pub mod voice;
 pub mod window;
 pub mod words;

@@ -16,6 +16,7 @@ use renderer::{Gpu, Instance, Material, MeshData, MeshId, Renderer, TextPainter,
 
 use crate::lettering::{Letters, Scribe};
 use crate::session::Session;
+use crate::trigger::Trigger;
 use crate::words::Words;
 pub use layout::Choice;
 use layout::{Content, Layout};
@@ -27,9 +28,6 @@ const SIZE_M: DVec2 = DVec2::new(1.6, 1.0);
 const DISTANCE_M: f64 = 2.0;
 /// Its middle is this much below the eyes, where one looks without raising the head [m].
 const BELOW_EYES_M: f64 = 0.15;
-/// A trigger counts as pulled from here up, and as let go from the other down.
-const PULLED: f64 = 0.6;
-const LET_GO: f64 = 0.4;
 /// Radius of the dot that shows where one points [m].
 const DOT_M: f32 = 0.012;
 
@@ -52,7 +50,7 @@ pub struct Panel {
     /// What is asked, and where it hangs.
     shown: Option<Shown>,
     stop: StopSign,
-    is_pulled: bool,
+    trigger: Trigger,
     words: Words,
 }
 
@@ -73,7 +71,7 @@ impl Panel {
             answered_in,
             shown: None,
             stop: StopSign::default(),
-            is_pulled: false,
+            trigger: Trigger::default(),
             words,
         }
     }
@@ -87,23 +85,16 @@ impl Panel {
         self.stop.attend(session, pointing)?;
         self.show(content, pointing.map(|pointing| pointing.head));
         let (Some(shown), Some(pointing)) = (&mut self.shown, pointing) else {
-            self.is_pulled = false;
+            self.trigger = Trigger::default();
             return Ok(());
         };
         shown.at = pointing
             .hand
             .and_then(|hand| pixel(&shown.pose, pointing.head.position, hand.position));
-        let was_pulled = self.is_pulled;
-        self.is_pulled = if was_pulled {
-            pointing.trigger > LET_GO
-        } else {
-            pointing.trigger > PULLED
-        };
+        let is_pressed = self.trigger.press(pointing.trigger);
         let choice = shown.at.and_then(|at| shown.layout.choice(at)).cloned();
         match choice {
-            Some(choice) if self.is_pulled && !was_pulled => {
-                choose(&choice, session, self.answered_in)
-            }
+            Some(choice) if is_pressed => choose(&choice, session, self.answered_in),
             _ => Ok(()),
         }
     }

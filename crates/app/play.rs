@@ -68,11 +68,7 @@ pub fn play(arguments: &PlayArguments, root: &Path) -> Result<()> {
         scene,
         frames: arguments.frames,
         seed: arguments.seed,
-        device: match choice {
-            Choice::Headset => "headset",
-            Choice::DeskWindow => "desk",
-            Choice::ScriptWindow | Choice::ScriptOffscreen => "script",
-        },
+        device: choice.device(),
         keep: Keep::Recording(folder),
     };
     let wanted = Wanted {

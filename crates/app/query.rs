@@ -52,8 +52,6 @@ pub fn query(arguments: &QueryArguments) -> Result<()> {
     };
     match desk.answer_all(BufReader::new(input), &mut io::stdout().lock()) {
         Ok(()) => {}
-        // Whoever reads has read enough, as `head` does.
-        Err(Failure::Output(error)) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(()),
         Err(Failure::Output(error)) => return Err(error).context("the answers cannot be written"),
         Err(Failure::Input(error)) => return Err(error).context(format!("{name} cannot be read")),
     }

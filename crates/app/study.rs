@@ -56,3 +56,8 @@ fn entropy() -> u64 {
 fn utc_now() -> String {
     output::utc_time(SystemTime::now())
 }
+
+/// Today, in Coordinated Universal Time: `YYYY-MM-DD`.
+fn today() -> String {
+    utc_now().chars().take(10).collect()
+}

@@ -8,6 +8,7 @@ use glam::{DVec2, DVec3};
 use physics::Pose;
 
 use crate::signs::{Ground, Sign, facing};
+use crate::trigger::Trigger;
 use crate::words::PauseWords;
 
 /// Size of the letters [m], and from how far they are read at most: an arm's length [m].
@@ -21,9 +22,6 @@ const OVER_WRIST_M: f64 = 0.09;
 const LOOKS_WITHIN: f64 = 0.45;
 /// How long a look chooses [s].
 const DWELL_S: f64 = 1.5;
-/// A trigger counts as pulled from here up, and as let go from the other down.
-const PULLED: f64 = 0.6;
-const LET_GO: f64 = 0.4;
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,7 +59,7 @@ pub struct Wrist {
     since_s: f64,
     /// A look has chosen: it has to leave before the next.
     is_done: bool,
-    is_pulled: bool,
+    trigger: Trigger,
 }
 
 impl Wrist {
@@ -73,8 +71,7 @@ impl Wrist {
         let arms = arms.filter(|arms| is_due && looks_at_wrist(arms));
         self.pose = arms.map(|arms| facing(hung(arms.wrist.position), arms.head.position));
         // Also while nothing is seen of the panel: a trigger that is pulled already chooses nothing.
-        let was_pulled = self.is_pulled;
-        self.is_pulled = trigger > if was_pulled { LET_GO } else { PULLED };
+        let is_pulled = self.trigger.press(trigger);
         let (Some(arms), Some(pose)) = (arms, self.pose) else {
             (self.at, self.is_done) = (None, false);
             return None;
@@ -88,7 +85,7 @@ impl Wrist {
         if at != self.at {
             (self.at, self.since_s, self.is_done) = (at, now_s, false);
         }
-        let is_pressed = pointed.is_some() && self.is_pulled && !was_pulled;
+        let is_pressed = pointed.is_some() && is_pulled;
         let is_dwelt =
             looked.is_some() && looked == at && !self.is_done && now_s - self.since_s >= DWELL_S;
         self.is_done |= is_dwelt || is_pressed;

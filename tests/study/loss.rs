@@ -6,9 +6,9 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::process::{Child, Command, Output};
 
-use super::{begin, go_on, journals_of, new_study_in, refusal, said, text, whole_lines};
+use super::{begin, go_on, journals_of, new_study_in, refusal, said, scripted, text, whole_lines};
 use crate::support::fresh_folder;
 
 /// Something that is mounted until this is dropped.
@@ -193,17 +193,9 @@ fn a_clock_that_jumps_back_changes_no_order_and_overwrites_nothing() {
     fs::write(&back, "0").expect("writable");
     let study = new_study_in(&folder.join("study"), "2");
     let start = |command: &[String]| {
-        Command::new(env!("CARGO_BIN_EXE_bowling"))
-            .args(["study", &command[0], text(&study), "--device", "script"])
-            .args(&command[1..])
+        scripted(command, &study)
             .env("LD_PRELOAD", &library)
             .env("BOWLING_TEST_BACK", &back)
-            .env_remove("DISPLAY")
-            .env_remove("WAYLAND_DISPLAY")
-            .current_dir(env!("CARGO_MANIFEST_DIR"))
-            .stdin(Stdio::null())
-            .stdout(Stdio::null())
-            .stderr(Stdio::piped())
             .spawn()
             .expect("the program starts")
     };

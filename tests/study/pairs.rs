@@ -9,7 +9,10 @@ use experiment::random::SplitMix64;
 use game::{Event, EventKind, Game};
 use serde_json::Value;
 
-use super::{begin, copy_folder, entries, files, go_on, journals, refusal, said, text};
+use super::{
+    begin, comes_out_of_its_journals, copy_folder, entries, go_on, journals, new_study_with,
+    refusal, said, text,
+};
 use crate::support::{bowling, fresh_folder};
 
 const ELASTICITY: [&str; 8] = [
@@ -126,18 +129,7 @@ fn pairs_replay_to_the_last_bit_rebuild_and_tell_no_value_in_the_journal() {
             .count();
         assert_eq!(throws, 12);
     }
-    let before = files(&study.join("data"));
-    for (name, _) in &before {
-        if !name.starts_with("sourcedata") {
-            fs::remove_file(study.join("data").join(name)).expect("writable");
-        }
-    }
-    said(&["study", "rebuild", text(&study)]);
-    let after = files(&study.join("data"));
-    assert_eq!(before.len(), after.len());
-    for (one, other) in before.iter().zip(&after) {
-        assert!(one == other, "{} has changed", one.0.display());
-    }
+    comes_out_of_its_journals(&study);
     let copy = fresh_folder("study-pairs-copy").join("csv");
     said(&[
         "study",
@@ -317,19 +309,8 @@ fn a_study_of_pairs_is_analysed() {
 #[test]
 fn a_session_of_pairs_that_is_killed_goes_on_and_is_the_same_person() {
     let study = fresh_folder("study-pairs-killed").join("study");
-    let mut arguments = vec!["study", "new", text(&study), "--subjects", "1"];
-    arguments.extend([
-        "--training",
-        "1",
-        "--laboratory",
-        "a test",
-        "--contact",
-        "nobody",
-    ]);
-    arguments.extend(["--withdrawal-until", "2099-12-31"]);
-    arguments.extend(["--retention-until", "2099-12-31", "--pairs", "8"]);
-    arguments.extend(ELASTICITY);
-    said(&arguments);
+    let plan = [&["--training", "1", "--pairs", "8"][..], &ELASTICITY].concat();
+    new_study_with(&study, &plan);
     let seed = 5;
     let mut random = SplitMix64::new(seed);
     let mut kills = 0;

@@ -2,12 +2,14 @@
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 use serde_json::Value;
 
-use super::{copy, entries, files, journals, said, simulate, simulated, text};
+use super::{
+    comes_out_of_its_journals, copy, entries, files, journals, said, simulate, simulated, text,
+};
 use crate::support::fresh_folder;
 
 #[test]
@@ -15,21 +17,7 @@ fn a_simulated_study_is_complete_and_its_tables_come_out_of_the_journals_again()
     let study = copy("rebuilt");
     let status = said(&["study", "status", text(&study)]);
     assert_eq!(status.matches("  complete").count(), 2, "{status}");
-    let before = files(&study.join("data"));
-    for (name, _) in &before {
-        if !name.starts_with("sourcedata") {
-            fs::remove_file(study.join("data").join(name)).expect("writable");
-        }
-    }
-    said(&["study", "rebuild", text(&study)]);
-    let after = files(&study.join("data"));
-    let names = |files: &[(PathBuf, Vec<u8>)]| -> Vec<PathBuf> {
-        files.iter().map(|(name, _)| name.clone()).collect()
-    };
-    assert_eq!(names(&before), names(&after));
-    for (one, other) in before.iter().zip(&after) {
-        assert!(one == other, "{} has changed", one.0.display());
-    }
+    comes_out_of_its_journals(&study);
 }
 
 /// Nobody answers everything at one instant: each answer comes 2 to 8 s after the one before it, and the questions behind a

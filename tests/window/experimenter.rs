@@ -10,7 +10,7 @@ use serde_json::Value;
 use super::{SCREEN, wait_for};
 use crate::shared::process::Process;
 use crate::shared::screen::{Screen, colours};
-use crate::support::{bowling, fresh_folder};
+use crate::support::{NEW_STUDY, bowling, fresh_folder};
 
 const TITLE: &str = "^Bowling: the experimenter$";
 
@@ -36,21 +36,8 @@ impl Session {
     /// One that is about to ask for consent.
     fn begin_in(folder: PathBuf, screen: [u32; 2], typed: Stdio) -> Self {
         let study = folder.join("study");
-        let made = bowling(&[
-            "study",
-            "new",
-            study.to_str().expect("a plain path"),
-            "--subjects",
-            "1",
-            "--laboratory",
-            "a test",
-            "--contact",
-            "nobody",
-            "--withdrawal-until",
-            "2099-12-31",
-            "--retention-until",
-            "2099-12-31",
-        ]);
+        let new = ["study", "new", study.to_str().expect("a plain path")];
+        let made = bowling(&[&new[..], &["--subjects", "1"], &NEW_STUDY].concat());
         assert!(made.status.success());
         let screen = Screen::open(screen);
         let mut command = Command::new(env!("CARGO_BIN_EXE_bowling"));

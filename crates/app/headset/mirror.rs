@@ -21,7 +21,7 @@ use winit::keyboard::{KeyCode, PhysicalKey};
 use winit::platform::run_on_demand::EventLoopExtRunOnDemand;
 use winit::window::{Window, WindowId};
 
-use super::Shared;
+use super::shared::{Seen, Shared};
 use super::watch::Watched;
 use crate::convert::{self, Stock};
 use crate::signs::SignStock;
@@ -154,16 +154,21 @@ impl Mirror {
                 stage.target.set_overlays(&[(Anchor::Center, &image)])?;
             }
         }
-        let Some(view) = self.shared.left_eye() else {
+        let Seen {
+            left_eye,
+            again,
+            beside,
+            fingers,
+        } = self.shared.seen();
+        let Some(view) = left_eye else {
             stage.target.draw_overlays()?;
             return Ok(());
         };
-        let beside = self.shared.beside();
         let seen = self.shared.with(|session| {
             let game = session.game();
             Ok((
                 game.visible(),
-                convert::HandLook::of(game).bent(self.shared.fingers()),
+                convert::HandLook::of(game).bent(fingers),
                 convert::Scores::of(game),
                 convert::vignette(game),
                 beside.instances(game, &stage.stock),
@@ -173,7 +178,7 @@ impl Mirror {
             return Ok(());
         };
         stage.stock.show_scores(&mut stage.renderer, &scores)?;
-        stage.stock.show_again(self.shared.again())?;
+        stage.stock.show_again(again)?;
         let mut scene = convert::scene(visible.iter(), &stage.stock, hand);
         scene.vignette = vignette;
         scene.instances.extend(more);

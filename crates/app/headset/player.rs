@@ -60,6 +60,7 @@ pub struct Player {
     /// What is around the participant.
     around: Around,
     scribe: Scribe,
+    words: Words,
     /// Why the last attempt to connect failed.
     refusal: String,
     /// Connections in a row that ended before a picture was shown, because it could not be drawn.
@@ -90,8 +91,9 @@ impl Player {
             fading: Fading::new(config.hand.lost_grip_s),
             again: Again::of(config),
             ears,
-            around: Around::new(config, words),
+            around: Around::new(config, words.clone()),
             scribe,
+            words,
             refusal: String::new(),
             undrawn: 0,
             config: config.clone(),
@@ -139,7 +141,15 @@ impl Player {
         std::thread::sleep(RETRY);
         self.shared.begin_connecting();
         let opened = Found::look().map_err(Into::into).and_then(|found| {
-            Stage::open(found, self.settings, &self.scribe, &self.root, &self.config)
+            let (root, config) = (&self.root, &self.config);
+            Stage::open(
+                found,
+                self.settings,
+                &self.scribe,
+                root,
+                config,
+                &self.words,
+            )
         });
         self.shared.beat();
         let stage = match opened {
@@ -226,7 +236,6 @@ impl Player {
         let focus = headset.focus();
         let at = frame.display_time_ns();
         let fingers = self.participant.fingers(&readings);
-        self.shared.see_fingers(fingers);
         let (participant, panel, keys) = (&mut self.participant, &mut self.panel, &self.shared);
         let (fading, ears, again) = (&mut self.fading, &mut self.ears, &mut self.again);
         let (attention, around) = (&mut self.attention, &mut self.around);
@@ -279,19 +288,28 @@ impl Player {
             scene.instances.extend(beside.instances(game, &stage.stock));
             let signs = stage.signs.instances(&beside.signs, &mut stage.renderer)?;
             scene.instances.extend(signs);
-            keys.set_beside(beside);
             let pulse = pulses::of(game.events(), held).filter(|_| is_here);
             let happened = Happened::among(game.events());
             let shown = (convert::Scores::of(game), moment);
-            Ok((scene, shown, game.world_from_tracking(), pulse, happened))
+            Ok((
+                scene,
+                shown,
+                beside,
+                game.world_from_tracking(),
+                pulse,
+                happened,
+            ))
         })?;
-        let Some((mut scene, (scores, moment), rig, pulse, happened)) = played else {
+        let Some((mut scene, (scores, moment), beside, rig, pulse, happened)) = played else {
             // The main thread has finished the session without this one.
             headset.skip(frame)?;
             return Ok(());
         };
         stage.stock.show_again(moment.clone())?;
-        self.shared.set_again(moment);
+        {
+            let mut seen = self.shared.sight();
+            (seen.again, seen.beside, seen.fingers) = (moment, beside, fingers);
+        }
         stage.stock.show_scores(&mut stage.renderer, &scores)?;
         let panel = stage.panel.instances(&self.panel, &mut stage.renderer)?;
         scene.instances.extend(panel);
@@ -303,7 +321,7 @@ impl Player {
             let views = headset
                 .show(frame, &mut stage.renderer, &scene, rig, false)?
                 .views;
-            self.shared.see(views.first().copied());
+            self.shared.sight().left_eye = views.first().copied();
             !views.is_empty()
         } else {
             headset.skip(frame)?;

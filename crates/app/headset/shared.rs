@@ -15,9 +15,17 @@ use crate::voice::Voice;
 
 use super::around::Beside;
 
-/// What a thread that panicked left is as whole as before: only single values are put in.
-fn locked<T>(value: &Mutex<T>) -> MutexGuard<'_, T> {
-    value.lock().unwrap_or_else(PoisonError::into_inner)
+/// What was in sight in the headset's last frame and is no part of the game.
+#[derive(Clone, Default)]
+pub struct Seen {
+    /// The left eye's view, world frame, once a picture was shown.
+    pub left_eye: Option<View>,
+    /// What the screen over the lane shows again.
+    pub again: Option<Moment>,
+    /// What is around the participant.
+    pub beside: Beside,
+    /// The fingers of a bare hand that plays.
+    pub fingers: Option<Fingers>,
 }
 
 /// What the threads share.
@@ -29,14 +37,8 @@ pub struct Shared {
     /// Whether it is making a connection.
     is_connecting: AtomicBool,
     began: Instant,
-    /// What the left eye saw last, world frame.
-    left_eye: Mutex<Option<View>>,
-    /// What the screen over the lane shows again.
-    again: Mutex<Option<Moment>>,
-    /// What is around the participant.
-    beside: Mutex<Beside>,
-    /// The fingers of a bare hand that plays.
-    fingers: Mutex<Option<Fingers>>,
+    /// What the mirror shows beside the game.
+    seen: Mutex<Seen>,
     /// The experimenter's keys for Red and Blue: pressed since the last frame.
     keys: [AtomicBool; 2],
     /// Pictures that the headset missed.
@@ -57,10 +59,7 @@ impl Shared {
             beat_ms: AtomicU64::new(0),
             is_connecting: AtomicBool::new(false),
             began: Instant::now(),
-            left_eye: Mutex::new(None),
-            again: Mutex::new(None),
-            beside: Mutex::default(),
-            fingers: Mutex::new(None),
+            seen: Mutex::default(),
             keys: Default::default(),
             missed: AtomicU64::new(0),
             voice: Voice::new()?,
@@ -113,38 +112,15 @@ impl Shared {
         self.missed.load(Ordering::Relaxed)
     }
 
-    /// Tells the mirror what the screen over the lane shows.
-    pub fn set_again(&self, moment: Option<Moment>) {
-        *locked(&self.again) = moment;
+    /// What was in sight last.
+    pub fn seen(&self) -> Seen {
+        self.sight().clone()
     }
 
-    pub fn again(&self) -> Option<Moment> {
-        locked(&self.again).clone()
-    }
-
-    /// Tells the mirror what is around the participant.
-    pub fn set_beside(&self, beside: Beside) {
-        *locked(&self.beside) = beside;
-    }
-
-    pub fn beside(&self) -> Beside {
-        locked(&self.beside).clone()
-    }
-
-    pub fn left_eye(&self) -> Option<View> {
-        *locked(&self.left_eye)
-    }
-
-    pub fn see(&self, left_eye: Option<View>) {
-        *locked(&self.left_eye) = left_eye;
-    }
-
-    pub fn fingers(&self) -> Option<Fingers> {
-        *locked(&self.fingers)
-    }
-
-    pub fn see_fingers(&self, fingers: Option<Fingers>) {
-        *locked(&self.fingers) = fingers;
+    /// What is in sight, to be changed.
+    pub fn sight(&self) -> MutexGuard<'_, Seen> {
+        // What a thread that panicked left is as whole as before: only single values are put in.
+        self.seen.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     pub fn must_stop(&self) -> bool {

@@ -33,6 +33,7 @@ impl Stage {
         scribe: &Scribe,
         root: &Path,
         config: &Config,
+        words: &Words,
     ) -> Result<Self> {
         let headset = HeadsetSession::open(found, settings)?;
         let mut renderer = Renderer::new(headset.gpu(), convert::settings(&config.shows))
@@ -40,8 +41,7 @@ impl Stage {
         let mut stock = Stock::load(&mut renderer, root, config)?;
         stock.add_screen(&mut renderer, root, config)?;
         stock.paint_apart(scribe);
-        let words = Words::load(root, config)?;
-        let mut panel = PanelStock::new(headset.gpu(), &mut renderer, &words)?;
+        let mut panel = PanelStock::new(headset.gpu(), &mut renderer, words)?;
         panel.paint_apart(scribe);
         let mut signs = SignStock::new(headset.gpu(), &mut renderer)?;
         signs.paint_apart(scribe);

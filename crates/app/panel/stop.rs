@@ -7,8 +7,9 @@ use game::Game;
 use glam::{DQuat, DVec2, DVec3};
 use physics::Pose;
 
-use super::{PULLED, Pointing, share};
+use super::{Pointing, share};
 use crate::session::Session;
+use crate::trigger::PULLED;
 
 /// Size of the sign [m].
 pub const SIZE_M: DVec2 = DVec2::new(0.48, 0.32);

@@ -24,7 +24,7 @@ use winit::window::{Window, WindowId};
 use super::board::{FAINT, GROUND, LETTERS, ON, WARNING};
 use super::console::Console;
 use super::pane::Pane;
-use super::utc_now;
+use super::today;
 
 /// Size of the window at first [points].
 const SIZE: (f64, f64) = (640.0, 700.0);
@@ -85,10 +85,6 @@ const EVERYTHING: Ticks = Ticks {
     share_motion: true,
     contact: true,
 };
-
-fn today() -> String {
-    utc_now().chars().take(10).collect()
-}
 
 /// The form while it is ticked.
 struct Gate<'a> {

@@ -12,7 +12,7 @@ use experiment::study::{ParticipantId, Study};
 use experiment::tables::{Export, Format};
 
 use super::folder::{self, place_text};
-use super::{entropy, seat, tables, utc_now};
+use super::{entropy, seat, tables, today, utc_now};
 use crate::args::{
     EraseArguments, ExportArguments, GuidanceChoice, NewStudyArguments, PlanArguments, RuleChoice,
     UnblindArguments, unusable,
@@ -240,11 +240,7 @@ pub fn status(folder: &Path) -> Result<()> {
 
 /// Says what is due by now of keeping data.
 fn remind(study: &Study) {
-    let now = utc_now();
-    let reminder = study
-        .plan()
-        .about
-        .reminder(now.get(..10).unwrap_or_default());
+    let reminder = study.plan().about.reminder(&today());
     if let Some(reminder) = reminder {
         println!("Reminder: {reminder}.");
     }

@@ -8,7 +8,7 @@ use experiment::consent::{Consent, Ticks};
 use experiment::participant::{Model, Simulated};
 use experiment::protocol::Note;
 use experiment::random::SplitMix64;
-use experiment::staircase::Observer;
+use experiment::staircase::{Observer, StaircasePlan};
 use experiment::study::{Lock, ParticipantId, Study};
 use winit::event_loop::EventLoop;
 
@@ -17,7 +17,7 @@ use super::console::Console;
 use super::folder;
 use super::gate;
 use super::seat::{self, Guest};
-use super::{entropy, tables, utc_now};
+use super::{entropy, tables, today, utc_now};
 use crate::args::{DeviceChoice, ResumeArguments, RunArguments};
 use crate::choose::{self, Choice, Machine};
 use crate::devices::Device;
@@ -39,9 +39,7 @@ pub fn run(arguments: &RunArguments, root: &Path) -> Result<()> {
         id => Some(not_begun(&study, id)?),
     };
     let (consent, attendance) = if is_script(choice) {
-        let today = utc_now();
-        let consent = simulated_consent(&study, today.get(..10).unwrap_or_default())?;
-        (consent, None)
+        (simulated_consent(&study, &today())?, None)
     } else {
         let console = Console::listen()?;
         let (consent, events) = gate::pass(&study, &console)?;
@@ -151,11 +149,7 @@ fn guest<'a>(
     Ok(Guest {
         participant,
         slot,
-        device: match choice {
-            Choice::Headset => "headset",
-            Choice::DeskWindow => "desk",
-            Choice::ScriptWindow | Choice::ScriptOffscreen => "script",
-        },
+        device: choice.device(),
         seed: seed(study, slot),
         notes,
         before: None,
@@ -218,7 +212,7 @@ pub fn simulated(study: &Study, slot: u32, seed: u64, threshold: Option<f64>) ->
         .plan()
         .staircase
         .as_ref()
-        .map_or(1.0, |plan| (plan.furthest - plan.standard).abs());
+        .map_or(1.0, StaircasePlan::range);
     let observer = Observer {
         target: threshold.map_or(USUAL_TARGET, |threshold| threshold / range),
         false_alarms: USUAL_FALSE_ALARMS,

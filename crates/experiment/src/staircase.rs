@@ -150,6 +150,11 @@ pub struct Staircase {
 }
 
 impl StaircasePlan {
+    /// From the standard value to the one that is furthest from it, in the parameter's unit.
+    pub fn range(&self) -> f64 {
+        (self.furthest - self.standard).abs()
+    }
+
     /// Whether it can be run.
     ///
     /// # Errors
@@ -300,7 +305,7 @@ impl Staircase {
             Chooser::UpDown(rule) => rule.estimate()?,
             Chooser::Posterior(rule) => rule.estimate(),
         };
-        let range = (self.plan.furthest - self.plan.standard).abs();
+        let range = self.plan.range();
         let catches = self
             .done
             .iter()

@@ -135,7 +135,7 @@ impl Differences {
 
     /// From the standard value to the one that is furthest from it, in the parameter's unit.
     pub fn range(&self) -> f64 {
-        (self.plan.furthest - self.plan.standard).abs()
+        self.plan.range()
     }
 
     /// Pairs of all participants.
@@ -285,7 +285,7 @@ fn observed(
     };
     let name = format!("data/{id}/{session}/beh/{id}_{session}_task-pairs_beh.tsv");
     let answers = answers(&folder.join(name))?;
-    let range = (plan.furthest - plan.standard).abs();
+    let range = plan.range();
     let is_compared = answers.iter().any(|(difference, _)| *difference > 0.0);
     let shares = answers
         .iter()

@@ -293,6 +293,24 @@ mod tests {
         }
     }
 
+    /// As after a crash between the tombstone and the register.
+    #[test]
+    fn an_erasure_that_is_repeated_leaves_one_tombstone() {
+        let folder = tempfile::tempdir().unwrap();
+        let (study, ids) = study_of_two(folder.path());
+        let lock = study.lock().unwrap();
+        let register = study.plan_folder().join(ASSIGNMENTS);
+        let before = fs::read(&register).unwrap();
+        study.erase(&lock, &ids[0], "x", "2026-11-23").unwrap();
+        fs::write(&register, before).unwrap();
+        let erased = study.erase(&lock, &ids[0], "x", "2026-11-24").unwrap();
+        assert_eq!(erased.slot, Some(1));
+        assert!(!text(&register).contains(ids[0].label()));
+        let tombstones = text(&study.plan_folder().join(TOMBSTONES));
+        assert_eq!(tombstones.lines().count(), 2, "{tombstones}");
+        assert!(!tombstones.contains("2026-11-24"), "{tombstones}");
+    }
+
     #[test]
     fn has_finds_words_only() {
         let id = ParticipantId::parse("p7k2").unwrap();

@@ -7,7 +7,7 @@ use crate::staircase::{Reply, StaircasePlan};
 
 /// A value of the parameter, or a difference: six decimals, and more where the whole range is less than a tenth.
 fn value(value: f64, plan: &StaircasePlan) -> String {
-    let size = libm::log10((plan.furthest - plan.standard).abs());
+    let size = libm::log10(plan.range());
     let more = (-libm::floor(size) - 1.0).clamp(0.0, 300.0) as usize;
     format!("{value:.*}", 6 + more)
 }

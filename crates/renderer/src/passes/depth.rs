@@ -68,35 +68,17 @@ fn pipeline(
     samples: u32,
     format: wgpu::TextureFormat,
 ) -> wgpu::RenderPipeline {
-    let module = super::shader(device, "depth", shaders::depth(samples));
-    let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("depth"),
-        bind_group_layouts: &[Some(layout)],
-        immediate_size: 0,
-    });
-    device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-        label: Some("depth"),
-        layout: Some(&layout),
-        vertex: wgpu::VertexState {
-            module: &module,
-            entry_point: Some("vertex"),
-            compilation_options: Default::default(),
-            buffers: &[],
-        },
-        primitive: wgpu::PrimitiveState::default(),
-        depth_stencil: Some(wgpu::DepthStencilState {
+    super::Overlay {
+        label: "depth",
+        shader: shaders::depth(samples).into(),
+        layout,
+        topology: wgpu::PrimitiveTopology::TriangleList,
+        target: None,
+        depth: Some(wgpu::DepthStencilState {
             format,
             depth_compare: Some(wgpu::CompareFunction::Always),
             ..super::depth_state()
         }),
-        multisample: wgpu::MultisampleState::default(),
-        fragment: Some(wgpu::FragmentState {
-            module: &module,
-            entry_point: Some("fragment"),
-            compilation_options: Default::default(),
-            targets: &[],
-        }),
-        multiview_mask: None,
-        cache: None,
-    })
+    }
+    .pipeline(device)
 }

@@ -209,3 +209,50 @@ fn shader(
         source: wgpu::ShaderSource::Wgsl(text.into()),
     })
 }
+
+/// What a pass draws over a whole picture, or a rectangle of it, without vertices from a buffer.
+struct Overlay<'a> {
+    label: &'static str,
+    shader: std::borrow::Cow<'static, str>,
+    layout: &'a wgpu::BindGroupLayout,
+    topology: wgpu::PrimitiveTopology,
+    /// `None` writes depth alone.
+    target: Option<wgpu::ColorTargetState>,
+    depth: Option<wgpu::DepthStencilState>,
+}
+
+impl Overlay<'_> {
+    fn pipeline(self, device: &wgpu::Device) -> wgpu::RenderPipeline {
+        let module = shader(device, self.label, self.shader);
+        let targets: Vec<_> = self.target.into_iter().map(Some).collect();
+        let layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(self.label),
+            bind_group_layouts: &[Some(self.layout)],
+            immediate_size: 0,
+        });
+        device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(self.label),
+            layout: Some(&layout),
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vertex"),
+                compilation_options: Default::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState {
+                topology: self.topology,
+                ..Default::default()
+            },
+            depth_stencil: self.depth,
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some("fragment"),
+                compilation_options: Default::default(),
+                targets: &targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+    }
+}

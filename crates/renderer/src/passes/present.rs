@@ -23,41 +23,20 @@ pub(crate) struct Picture {
 impl PresentPass {
     pub fn new(device: &wgpu::Device, surface_format: wgpu::TextureFormat) -> Self {
         let layout = layout(device);
-        let module = super::shader(device, "present", shaders::PRESENT);
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("present"),
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
         let target = wgpu::ColorTargetState {
             format: surface_format,
             blend: Some(wgpu::BlendState::ALPHA_BLENDING),
             write_mask: wgpu::ColorWrites::ALL,
         };
-        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("present"),
-            layout: Some(&pipeline_layout),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("vertex"),
-                compilation_options: Default::default(),
-                buffers: &[],
-            },
-            primitive: wgpu::PrimitiveState {
-                topology: wgpu::PrimitiveTopology::TriangleStrip,
-                ..Default::default()
-            },
-            depth_stencil: None,
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("fragment"),
-                compilation_options: Default::default(),
-                targets: &[Some(target)],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
+        let pipeline = super::Overlay {
+            label: "present",
+            shader: shaders::PRESENT.into(),
+            layout: &layout,
+            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            target: Some(target),
+            depth: None,
+        }
+        .pipeline(device);
         let sampler = device.create_sampler(&wgpu::SamplerDescriptor {
             label: Some("present"),
             mag_filter: wgpu::FilterMode::Linear,

@@ -32,41 +32,20 @@ impl VignettePass {
                 count: None,
             }],
         });
-        let module = super::shader(device, "vignette", shaders::VIGNETTE);
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("vignette"),
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
         let target = wgpu::ColorTargetState {
             format: COLOR_FORMAT,
             blend: Some(wgpu::BlendState::ALPHA_BLENDING),
             write_mask: wgpu::ColorWrites::COLOR,
         };
-        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("vignette"),
-            layout: Some(&pipeline_layout),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("vertex"),
-                compilation_options: Default::default(),
-                buffers: &[],
-            },
-            primitive: wgpu::PrimitiveState {
-                topology: wgpu::PrimitiveTopology::TriangleStrip,
-                ..Default::default()
-            },
-            depth_stencil: None,
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("fragment"),
-                compilation_options: Default::default(),
-                targets: &[Some(target)],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
+        let pipeline = super::Overlay {
+            label: "vignette",
+            shader: shaders::VIGNETTE.into(),
+            layout: &layout,
+            topology: wgpu::PrimitiveTopology::TriangleStrip,
+            target: Some(target),
+            depth: None,
+        }
+        .pipeline(device);
         Self {
             pipeline,
             layout,
