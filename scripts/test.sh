@@ -48,6 +48,9 @@ step "tests"
 cargo test --workspace --locked --no-run
 "${alone[@]}" cargo test --workspace --locked --offline
 
+step "the same bits in an optimised build"
+cargo test -p physics --release --locked --test pinned
+
 step "tables"
 # A made-up study and its copies, which building the tests has built too. Where there is no npm (exit 3) they are not validated;
 # in continuous integration that fails.
