@@ -221,9 +221,9 @@ pub struct PlayArguments {
     #[arg(long, value_enum)]
     pub device: Option<DeviceChoice>,
 
-    /// Refresh rate of the headset, in hertz [default: the highest that it offers].
-    #[arg(long, value_name = "HZ", allow_negative_numbers = true, value_parser = refresh_rate)]
-    pub refresh_rate: Option<f32>,
+    /// What is asked of a headset.
+    #[command(flatten)]
+    pub headset: HeadsetArguments,
 
     /// Open no window; the scripted participant plays and pictures go to files.
     #[arg(long)]
@@ -280,6 +280,14 @@ pub struct PlayArguments {
     /// config/default.toml, with dots between table and key.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub settings: Vec<String>,
+}
+
+/// What is asked of a headset, whoever plays in it.
+#[derive(Debug, Args)]
+pub struct HeadsetArguments {
+    /// Refresh rate of the headset, in hertz [default: the highest that it offers].
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true, value_parser = refresh_rate)]
+    pub refresh_rate: Option<f32>,
 }
 
 /// What is asked about two shapes.
@@ -457,6 +465,37 @@ mod tests {
             );
         }
         assert!(parse("script").is_ok());
+    }
+
+    /// Of whoever plays in a headset: `play`, and a study's `run` and `resume`.
+    #[test]
+    fn a_refresh_rate_is_taken_or_refused_alike_wherever_somebody_plays() {
+        let rate = |begin: &[&str], rate: &str| {
+            let all = [&["bowling"], begin, &["--refresh-rate", rate]].concat();
+            let command = Arguments::try_parse_from(all)?.command;
+            let headset = match command {
+                Some(Command::Play(play)) => play.headset,
+                Some(Command::Study(study)) => match study.command {
+                    StudyCommand::Run(run) => run.headset,
+                    StudyCommand::Resume(resume) => resume.headset,
+                    other => panic!("expected run or resume, got {other:?}"),
+                },
+                other => panic!("expected somebody who plays, got {other:?}"),
+            };
+            Ok::<_, clap::Error>(headset.refresh_rate)
+        };
+        let refused = |begin: &[&str], number: &str| {
+            let error = rate(begin, number).expect_err(number);
+            error.to_string()
+        };
+        let players: [&[&str]; 3] = [&["play"], &["study", "run", "s"], &["study", "resume", "s"]];
+        for begin in players {
+            assert_eq!(rate(begin, "90").expect("a rate"), Some(90.0));
+            for number in ["19", "501", "-90", "fast"] {
+                let error = refused(begin, number);
+                assert!(error.contains("from 20 to 500"), "{error}");
+            }
+        }
     }
 
     #[test]

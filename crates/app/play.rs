@@ -78,7 +78,7 @@ pub fn play(arguments: &PlayArguments, root: &Path) -> Result<()> {
         Choice::ScriptOffscreen => offscreen(setup, root, wanted),
         Choice::Headset => {
             let found = found.context("a headset is chosen only where one was found")?;
-            let headset = (found, headset::asking_for(arguments.refresh_rate));
+            let headset = (found, headset::asking_for(arguments.headset.refresh_rate));
             headset::run(setup, root, wanted, headset, None)
         }
         Choice::DeskWindow | Choice::ScriptWindow => window::run(setup, root, wanted, choice, None),

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
 
-use super::DeviceChoice;
+use super::{DeviceChoice, HeadsetArguments};
 
 /// Arguments of `bowling study`.
 #[derive(Debug, Args)]
@@ -208,6 +208,10 @@ pub struct RunArguments {
     /// Who bowls [default: the first of headset, desk, script that is there].
     #[arg(long, value_enum)]
     pub device: Option<DeviceChoice>,
+
+    /// What is asked of a headset.
+    #[command(flatten)]
+    pub headset: HeadsetArguments,
 }
 
 /// Arguments of `bowling study resume`.
@@ -224,6 +228,10 @@ pub struct ResumeArguments {
     /// Who bowls [default: the first of headset, desk, script that is there].
     #[arg(long, value_enum)]
     pub device: Option<DeviceChoice>,
+
+    /// What is asked of a headset.
+    #[command(flatten)]
+    pub headset: HeadsetArguments,
 }
 
 /// Arguments of `bowling study unblind`.

@@ -54,7 +54,8 @@ pub fn run(arguments: &RunArguments, root: &Path) -> Result<()> {
     println!("Participant {participant}.");
     let notes = vec![Note::Consent(consent), clock(now, 0.0)];
     let guest = guest(&study, &participant, choice, notes)?;
-    sit(&study, &lock, guest, choice, attendance, root)
+    let device = (choice, arguments.headset.refresh_rate);
+    sit(&study, &lock, guest, device, attendance, root)
 }
 
 /// The experimenter at the terminal, and the window system where a window was opened already.
@@ -101,7 +102,8 @@ pub fn resume(arguments: &ResumeArguments, root: &Path) -> Result<()> {
     } else {
         Some(attended(Console::listen()?, None))
     };
-    sit(&study, &lock, guest, choice, attendance, root)
+    let device = (choice, arguments.headset.refresh_rate);
+    sit(&study, &lock, guest, device, attendance, root)
 }
 
 const ALL_TICKS: Ticks = Ticks {
@@ -161,12 +163,13 @@ pub fn seed(study: &Study, slot: u32) -> u64 {
     SplitMix64::for_index(study.plan().seed, u64::from(slot)).next_u64()
 }
 
-/// The session, from the first frame to the tables; without anybody attending a simulated participant answers.
+/// The session, from the first frame to the tables; without anybody attending a simulated participant answers. A headset is asked for
+/// a refresh rate [Hz], where one is given.
 fn sit(
     study: &Study,
     lock: &Lock,
     guest: Guest,
-    choice: Choice,
+    (choice, refresh_rate): (Choice, Option<f32>),
     attendance: Option<Attendance>,
     root: &Path,
 ) -> Result<()> {
@@ -187,7 +190,7 @@ fn sit(
             session.finish(None, wanted, &mut |_| ())?;
         }
         Choice::Headset => {
-            let headset = (choose::find()?, headset::asking_for(None));
+            let headset = (choose::find()?, headset::asking_for(refresh_rate));
             headset::run(setup, root, wanted, headset, Some(attendance))?;
         }
         Choice::DeskWindow | Choice::ScriptWindow => {
