@@ -7,6 +7,7 @@ mod asking;
 pub mod course;
 mod health;
 mod recording;
+mod rows;
 mod setup;
 
 use std::path::{Path, PathBuf};

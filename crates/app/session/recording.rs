@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use game::{Button, Game, Input};
 
+use super::rows::Rows;
 use crate::journal::{Header, Journal};
 use crate::motion;
 use crate::output::{Draft, JOURNAL, MOTION, OutputFolder};
@@ -17,7 +18,7 @@ const MOTION_FAILED: &str = "cannot write the motion table: is the disk full?";
 /// The files of a recording under way.
 pub struct Recording {
     folder: OutputFolder,
-    motion: Draft,
+    motion: Rows<Draft>,
     camera: Camera,
 }
 
@@ -30,6 +31,7 @@ impl Recording {
         let folder = OutputFolder::create(path)?;
         let begun = folder.draft(MOTION).and_then(|mut motion| {
             writeln!(motion, "{}", motion::heading()).context(MOTION_FAILED)?;
+            let motion = Rows::begin(motion).context("cannot start the motion table's thread")?;
             let journal = Journal::create(&folder.path().join(JOURNAL), header)?;
             Ok((motion, journal))
         });
@@ -55,7 +57,8 @@ impl Recording {
     /// # Errors
     /// When the disk is full or gone.
     pub fn frame(&mut self, game: &Game, input: &Input) -> Result<()> {
-        writeln!(self.motion, "{}", motion::row(game, input)).context(MOTION_FAILED)?;
+        let row = motion::row(game, input);
+        self.motion.push(row).context(MOTION_FAILED)?;
         self.camera.observe(game);
         Ok(())
     }
@@ -71,7 +74,8 @@ impl Recording {
     /// # Errors
     /// When a file cannot be written.
     pub fn finish(self, game: &Game, started: &[Button]) -> Result<(Vec<PathBuf>, Album)> {
-        let mut files = vec![self.folder.path().join(JOURNAL), self.motion.finish()?];
+        let motion = self.motion.close().context(MOTION_FAILED)?.finish()?;
+        let mut files = vec![self.folder.path().join(JOURNAL), motion];
         for button in started {
             let stem = button.file_stem();
             for (ending, content) in [
