@@ -14,11 +14,12 @@ use super::around::Around;
 use super::attention::Attention;
 use super::fading::Fading;
 use super::frames::FrameTimes;
+use super::notes;
 use super::pace::Pace;
+use super::pulses::{self, Presses, Whose};
 use super::shared::Shared;
 use super::stage::Stage;
 use super::throws::Throws;
-use super::{notes, pulses};
 use crate::again::Again;
 use crate::convert;
 use crate::devices::headset::Participant;
@@ -55,6 +56,8 @@ pub struct Player {
     throws: Throws,
     /// Whether the participant plays.
     attention: Attention,
+    /// Who presses Red and Blue.
+    presses: Presses,
     /// The hand that the tracker has lost.
     fading: Fading,
     /// What is around the participant.
@@ -88,6 +91,7 @@ impl Player {
                 .map_or_else(Pace::default, |_| Pace::settled()),
             throws: Throws::default(),
             attention: Attention::new(),
+            presses: Presses::default(),
             fading: Fading::new(config.hand.lost_grip_s),
             again: Again::of(config),
             ears,
@@ -239,6 +243,7 @@ impl Player {
         let (participant, panel, keys) = (&mut self.participant, &mut self.panel, &self.shared);
         let (fading, ears, again) = (&mut self.fading, &mut self.ears, &mut self.again);
         let (attention, around) = (&mut self.attention, &mut self.around);
+        let presses = &mut self.presses;
         let played = self.shared.with(|session| {
             let rig = session.game().world_from_tracking();
             let arms = attention
@@ -256,8 +261,11 @@ impl Player {
                 participant.pause(&readings)
             };
             input.recentre = wish == Some(Wish::Recentre);
-            input.press_red |= keys.take_press(Button::Red);
-            input.press_blue |= keys.take_press(Button::Blue);
+            let thumb = [input.press_red, input.press_blue];
+            let key = Button::BOTH.map(|button| keys.take_press(button));
+            presses.follow(thumb, key);
+            input.press_red |= key[Button::Red as usize];
+            input.press_blue |= key[Button::Blue as usize];
             let held = session.game().held();
             session.frame(input)?;
             if is_here {
@@ -288,7 +296,8 @@ impl Player {
             scene.instances.extend(beside.instances(game, &stage.stock));
             let signs = stage.signs.instances(&beside.signs, &mut stage.renderer)?;
             scene.instances.extend(signs);
-            let pulse = pulses::of(game.events(), held).filter(|_| is_here);
+            let pulses = [Whose::Playing, Whose::Other]
+                .map(|whose| pulses::of(game.events(), held, presses, whose).filter(|_| is_here));
             let happened = Happened::among(game.events());
             let shown = (convert::Scores::of(game), moment);
             Ok((
@@ -296,11 +305,11 @@ impl Player {
                 shown,
                 beside,
                 game.world_from_tracking(),
-                pulse,
+                pulses,
                 happened,
             ))
         })?;
-        let Some((mut scene, (scores, moment), beside, rig, pulse, happened)) = played else {
+        let Some((mut scene, (scores, moment), beside, rig, pulses, happened)) = played else {
             // The main thread has finished the session without this one.
             headset.skip(frame)?;
             return Ok(());
@@ -343,10 +352,12 @@ impl Player {
         if self.attention.is_paused() != was_paused {
             self.shared.note(json!({ "paused": !was_paused }))?;
         }
-        if let Some(pulse) = pulse {
-            let side = self.participant.throwing();
-            headset.pulse(side, pulse.amplitude, pulse.seconds)?;
-            self.shared.note(pulse.line(side))?;
+        let playing = self.participant.throwing();
+        for (side, pulse) in [playing, playing.other()].into_iter().zip(pulses) {
+            if let Some(pulse) = pulse {
+                headset.pulse(side, pulse.amplitude, pulse.seconds)?;
+                self.shared.note(pulse.line(side))?;
+            }
         }
         let line = self.times.finish(timing, is_shown);
         self.shared.note(line)?;

@@ -58,7 +58,8 @@ impl HeadsetSession {
         let [left, right] = located.as_slice() else {
             return Err(HeadsetError::Other("a view for one eye only".to_owned()));
         };
-        if !flags.contains(known) {
+        // Numbers that are none are no place either, whatever the flags say: the runtime would refuse the picture's.
+        if !flags.contains(known) || ![left, right].into_iter().all(is_somewhere) {
             self.release()?;
             self.stream.end(frame.time, self.blend, &[])?;
             return Ok(Shown::default());
@@ -192,6 +193,15 @@ impl Copies {
             depth: self.depth.map(image).transpose()?.map(numbers),
         })
     }
+}
+
+/// Whether where an eye is can be told in numbers.
+fn is_somewhere(eye: &xr::View) -> bool {
+    let turn = eye.pose.orientation;
+    space::vector(eye.pose.position).is_finite()
+        && [turn.x, turn.y, turn.z, turn.w]
+            .iter()
+            .all(|number| number.is_finite())
 }
 
 /// An eye in the world.
