@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Unpacks a real OpenXR runtime for the tests: Monado with its simulated and remote drivers, the OpenXR loader, software
-# Vulkan and the validation layers, from Debian trixie into a folder of its own. Nothing of the system is changed.
+# Vulkan, the validation layers and the one that writes every call down, from Debian trixie into a folder of its own. Nothing
+# of the system is changed.
 #
 #   scripts/xr-runtime.sh [FOLDER]        default: ~/.cache/bowling/xr-runtime
 #
@@ -9,7 +10,7 @@
 set -euo pipefail
 
 # Debian 12 has no Monado, and a C library that is too old for trixie's: everything comes from trixie, its dynamic loader too.
-readonly packages=monado-service,monado-cli,libopenxr1-monado,libopenxr-loader1,mesa-vulkan-drivers,libvulkan1,openxr-layer-corevalidation,vulkan-validationlayers
+readonly packages=monado-service,monado-cli,libopenxr1-monado,libopenxr-loader1,mesa-vulkan-drivers,libvulkan1,openxr-layer-apidump,openxr-layer-corevalidation,vulkan-validationlayers
 readonly suite=trixie
 
 cannot() {
@@ -27,19 +28,25 @@ folder=$(readlink -f "$folder")
 root=$folder/root
 libraries=$root/usr/lib/x86_64-linux-gnu
 
+# Whole, and of these packages: an earlier version of this script may have unpacked fewer.
 is_whole() {
-  [ -s "$folder/manifest" ] && (cd "$folder" && sha256sum --quiet --strict --check manifest >/dev/null 2>&1)
+  [ -s "$folder/manifest" ] && [ "$(cat "$folder/packages" 2>/dev/null)" = "$packages" ] \
+    && (cd "$folder" && sha256sum --quiet --strict --check manifest >/dev/null 2>&1)
 }
 
 # What the tests start or load; a mirror that lacks one of them must fail here and not in a test.
 parts() {
-  printf '%s\n' ld lavapipe.json monado.json root/usr/bin/monado-service root/usr/bin/monado-ctl
+  printf '%s\n' ld packages lavapipe.json monado.json root/usr/bin/monado-service root/usr/bin/monado-ctl
   local library
   for library in ld-linux-x86-64.so.2 libc.so.6 libopenxr_monado.so libopenxr_loader.so.1 libvulkan.so.1 libvulkan_lvp.so \
     libVkLayer_khronos_validation.so; do
     printf '%s\n' "root/usr/lib/x86_64-linux-gnu/$library"
   done
-  (cd "$folder" && find api_layers root/usr/lib root/usr/share/openxr -name '*core_validation*' -type f)
+  local layer
+  for layer in core_validation api_dump; do
+    printf '%s\n' "root/usr/lib/x86_64-linux-gnu/openxr/1/api_layers/libXrApiLayer_$layer.so"
+  done
+  (cd "$folder" && find api_layers root/usr/share/openxr -name '*.json' -type f)
 }
 
 unpack() {
@@ -59,6 +66,7 @@ unpack() {
 
 describe() {
   local layer
+  echo "$packages" >"$folder/packages"
   sed "s#\"library_path\": *\"[^\"]*\"#\"library_path\": \"$libraries/libvulkan_lvp.so\"#" \
     "$root/usr/share/vulkan/icd.d/lvp_icd.json" >"$folder/lavapipe.json"
   cat >"$folder/monado.json" <<JSON

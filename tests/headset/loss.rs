@@ -1,5 +1,6 @@
 //! What a session survives: focus, tracking, and the runtime itself come and go; the game and its journal stay.
 
+use std::ffi::OsStr;
 use std::path::Path;
 use std::time::Instant;
 
@@ -8,7 +9,7 @@ use glam::DVec3;
 
 use crate::client::Client;
 use crate::machine::runtime;
-use crate::play::start;
+use crate::play::{start, start_with};
 use crate::room::{Hand, PATIENCE, Room};
 use crate::service::{Compositor, Service};
 
@@ -22,11 +23,16 @@ pub struct Played {
 
 /// Plays against a service of its own; `None` where there is no runtime.
 pub fn play() -> Option<Played> {
+    play_in(&[])
+}
+
+/// As [`play`], with more in the program's environment.
+pub fn play_in(environment: &[(&str, &OsStr)]) -> Option<Played> {
     let runtime = runtime()?;
     let service = Service::start(&runtime, Compositor::Null);
     let out = tempfile::tempdir().expect("a temporary folder");
     let folder = out.path().join("session");
-    let mut client = start(&service, &folder);
+    let mut client = start_with(&service, &folder, "test", environment, &[]);
     let room = Room::enter(&service, &mut client, &folder);
     Some(Played {
         service,
@@ -246,6 +252,48 @@ fn a_lost_hand_drops_the_ball_after_a_while() {
     let after = (step("dropped") - step("tracking")) / 720.0;
     // In whole frames: 50 ms without a compositor, and at most 250 ms of a busy machine's.
     assert!((0.25..0.56).contains(&after), "dropped after {after} s");
+    played.end();
+}
+
+/// The head alone is lost, with a ball in the hand: the runtime gives numbers for it that are none, since its driver cannot say that it
+/// knows nothing. Game and journal have it, no picture is made from nowhere, and the hand plays on.
+#[test]
+fn a_lost_head_keeps_no_hand_from_playing() {
+    let Some(mut played) = play() else { return };
+    let room = &mut played.room;
+    room.take_ball(Hand::Right);
+    let head = room.packet.head;
+    let tracking = |room: &Room, part: &str, found: bool| {
+        let events = room.said.iter().map(|line| &line["event"]);
+        let such = events.filter(|event| event["event"] == "tracking" && event["found"] == found);
+        such.filter(|event| event["part"] == part).count()
+    };
+    let found = tracking(room, "head", true);
+    room.packet.head.position = DVec3::splat(f64::NAN);
+    room.send();
+    room.wait_until("the loss", |room| tracking(room, "head", false) == 1);
+    assert!(room.input.head.is_none() && room.input.hand.is_some());
+    let pictures = room.device("frame").len();
+    room.wait_until("frames that go on", |room| {
+        room.device("frame").len() > pictures + 10
+    });
+    let frames = room.device("frame").split_off(pictures + 1);
+    assert!(frames.iter().all(|frame| frame["shown"] == false));
+    assert_eq!(room.game.held(), Some(Model::Ball(0)));
+    room.hand(Hand::Right).trigger = 0.0;
+    room.send();
+    room.wait_until("the release", |room| room.count("released") == 1);
+    room.packet.head = head;
+    room.send();
+    room.wait_until("the head again", |room| {
+        tracking(room, "head", true) > found
+            && room
+                .device("frame")
+                .last()
+                .is_some_and(|frame| frame["shown"] == true)
+    });
+    assert_eq!(tracking(room, "hand", false), 0, "the hand was there");
+    assert!(room.device("lost").is_empty(), "the session went on");
     played.end();
 }
 

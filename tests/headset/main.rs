@@ -2,16 +2,22 @@
 //!
 //! `scripts/xr-runtime.sh` unpacks the runtime; `scripts/in-own-network.sh` keeps its open port to this machine.
 
+/// The order in which the runtime is called.
+mod calls;
 /// The program as the runtime's client, and the journal that it writes.
 mod client;
 /// `monado-ctl`.
 mod control;
 /// Play that goes on and on.
 mod endurance;
+/// The experimenter's window beside the headset.
+mod experimenter;
 /// What the eyes show.
 mod eyes;
 /// Bare hands.
 mod hands;
+/// Buttons and triggers, of the controllers that the runtime has.
+mod inputs;
 /// Tests that run as a client of the runtime themselves.
 mod inside;
 /// Focus, tracking and the runtime come and go.

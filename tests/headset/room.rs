@@ -218,8 +218,8 @@ impl Room {
         });
     }
 
-    /// Takes a ball from the rack and lifts it.
-    pub fn take_ball(&mut self, hand: Hand) {
+    /// Holds an open hand over a ball on the rack, so that it could take it; where the hand is then.
+    pub fn reach_ball(&mut self, hand: Hand) -> DVec3 {
         self.wait_until("a ball on the rack", |room| {
             room.game.observe().balls.iter().any(|ball| ball.is_on_rack)
         });
@@ -242,6 +242,12 @@ impl Room {
         self.wait_until("an open hand", |room| room.input.trigger == 0.0);
         self.reach(hand, above + DVec3::Y * 0.3);
         self.reach(hand, above);
+        above
+    }
+
+    /// Takes a ball from the rack and lifts it.
+    pub fn take_ball(&mut self, hand: Hand) {
+        let above = self.reach_ball(hand);
         self.hand(hand).close(1.0);
         self.send();
         self.wait_until("a ball in the hand", |room| room.game.held().is_some());

@@ -28,12 +28,26 @@ pub enum Compositor {
     },
 }
 
+/// What moves head and hands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Driver {
+    /// The tests, through a port ([`super::remote`]): the controllers are Valve's Index.
+    Remote,
+    /// Keys and mouse, in a window on a screen in memory: the controllers are those of Windows Mixed Reality.
+    Keys,
+    /// Nobody: simple controllers that move by themselves.
+    Simulated,
+}
+
 /// Monado's service with the remote driver, in folders and on a port of its own.
 pub struct Service {
     // Before the screen: the service must not outlive what it draws on.
     process: Process,
     /// What the real compositor draws on, and how often [1/s].
     screen: Option<(Screen, u32)>,
+    driver: Driver,
+    /// Where the window of [`Driver::Keys`] is.
+    keys: Option<Screen>,
     runtime: PathBuf,
     folder: TempDir,
     port: u16,
@@ -46,6 +60,14 @@ impl Service {
     /// # Panics
     /// With its log, when the service does not come up.
     pub fn start(runtime: &Path, compositor: Compositor) -> Self {
+        Self::start_with(runtime, compositor, Driver::Remote)
+    }
+
+    /// As [`Self::start`], with another driver.
+    ///
+    /// # Panics
+    /// As [`Self::start`].
+    pub fn start_with(runtime: &Path, compositor: Compositor, driver: Driver) -> Self {
         // In the system's folder: a socket's path has room for 107 bytes only.
         let folder = tempfile::tempdir().expect("a temporary folder");
         let port = free_port();
@@ -64,10 +86,18 @@ impl Service {
             // Room for the compositor's window.
             Compositor::Xvfb { hz } => Some((Screen::open([960, 540]), hz)),
         };
-        let process = launch(runtime, folder.path(), port, screen.as_ref());
+        let keys = (driver == Driver::Keys).then(|| Screen::open([800, 600]));
+        let place = Place {
+            runtime,
+            folder: folder.path(),
+            port,
+        };
+        let process = launch(&place, screen.as_ref(), (driver, keys.as_ref()));
         Self {
             process,
             screen,
+            driver,
+            keys,
             runtime: runtime.to_owned(),
             folder,
             port,
@@ -80,12 +110,13 @@ impl Service {
     /// When it still runs, or, with its log, when it does not come up.
     pub fn restart(&mut self) {
         assert!(self.process.ended().is_some(), "the service still runs");
-        self.process = launch(
-            &self.runtime,
-            self.folder.path(),
-            self.port,
-            self.screen.as_ref(),
-        );
+        let place = Place {
+            runtime: &self.runtime,
+            folder: self.folder.path(),
+            port: self.port,
+        };
+        let driver = (self.driver, self.keys.as_ref());
+        self.process = launch(&place, self.screen.as_ref(), driver);
     }
 
     /// Its process number.
@@ -110,6 +141,14 @@ impl Service {
     pub fn screen(&self) -> &Screen {
         let (screen, _) = self.screen.as_ref().expect("a compositor with a screen");
         screen
+    }
+
+    /// Where the driver's keys are pressed.
+    ///
+    /// # Panics
+    /// With a driver that has none.
+    pub fn keys(&self) -> &Screen {
+        self.keys.as_ref().expect("a driver with keys")
     }
 
     /// A command that runs `program` with the runtime's libraries, as a client of this service.
@@ -177,8 +216,24 @@ fn read_log(folder: &Path) -> String {
     String::from_utf8_lossy(&bytes).into_owned()
 }
 
-/// Starts the service and waits until its socket and the remote driver's port are open.
-fn launch(runtime: &Path, folder: &Path, port: u16, screen: Option<&(Screen, u32)>) -> Process {
+/// Where a service and its parts are.
+struct Place<'a> {
+    runtime: &'a Path,
+    folder: &'a Path,
+    port: u16,
+}
+
+/// Starts the service and waits until its socket is open, and the port of a remote driver.
+fn launch(
+    place: &Place,
+    screen: Option<&(Screen, u32)>,
+    (driver, keys): (Driver, Option<&Screen>),
+) -> Process {
+    let Place {
+        runtime,
+        folder,
+        port,
+    } = *place;
     let socket = run_folder(folder).join(SOCKET);
     // A killed service leaves its socket behind; the next one's must not be mistaken for it.
     if socket.exists() {
@@ -195,7 +250,6 @@ fn launch(runtime: &Path, folder: &Path, port: u16, screen: Option<&(Screen, u32
         .arg(runtime.join("root/usr/bin/monado-service"))
         .env("XDG_RUNTIME_DIR", run_folder(folder))
         .env("XDG_CONFIG_HOME", folder.join("config"))
-        .env("P_OVERRIDE_ACTIVE_CONFIG", "remote")
         .env("XRT_NO_STDIN", "1")
         .env_remove("DISPLAY")
         .env_remove("WAYLAND_DISPLAY")
@@ -212,14 +266,30 @@ fn launch(runtime: &Path, folder: &Path, port: u16, screen: Option<&(Screen, u32
             .env("XRT_COMPOSITOR_SCALE_PERCENTAGE", "25")
             .env("XRT_COMPOSITOR_COMPUTE", "1"),
     };
+    match driver {
+        Driver::Remote => command.env("P_OVERRIDE_ACTIVE_CONFIG", "remote"),
+        Driver::Keys => command
+            .env("P_OVERRIDE_ACTIVE_CONFIG", "none")
+            .env("QWERTY_ENABLE", "1")
+            // The window that takes them.
+            .env("XRT_DEBUG_GUI", "1"),
+        Driver::Simulated => command
+            .env("P_OVERRIDE_ACTIVE_CONFIG", "none")
+            .env("SIMULATED_ENABLE", "1")
+            .env("SIMULATED_LEFT", "simple")
+            .env("SIMULATED_RIGHT", "simple"),
+    };
+    if let Some(keys) = keys {
+        command.env("DISPLAY", keys.display());
+    }
     command.stderr(log.try_clone().expect("an open file"));
     command.stdout(log);
     let mut process = Process::start("monado-service", &mut command);
     let listening = format!("Listening on port '{port}'");
     let up = ask_until(PATIENCE, || {
         let log = read_log(folder);
-        let said =
-            log[before..].contains("service has started") && log[before..].contains(&listening);
+        let said = log[before..].contains("service has started")
+            && (driver != Driver::Remote || log[before..].contains(&listening));
         if said && socket.exists() {
             return Some(true);
         }

@@ -1,8 +1,10 @@
 //! A study in the headset: a question in the room is answered by pointing and pulling the trigger.
 
+use std::ffi::OsStr;
 use std::fs::{self, File};
+use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 use bowling_app::panel::{Choice, Panel};
 use bowling_app::session::Session;
@@ -20,12 +22,13 @@ use crate::machine::runtime;
 use crate::room::{Hand, PATIENCE, Room};
 use crate::service::{Compositor, Service};
 
-/// A study for one participant.
-fn new_study(folder: &Path) -> PathBuf {
+/// A study for one participant, with more arguments.
+pub fn new_study(folder: &Path, more: &[&str]) -> PathBuf {
     let made = Command::new(env!("CARGO_BIN_EXE_bowling"))
         .args(["study", "new"])
         .arg(folder)
         .args(["--subjects", "1", "--frames", "1"])
+        .args(more)
         .args(["--laboratory", "a test", "--contact", "nobody"])
         .args(["--withdrawal-until", "2099-12-31"])
         .args(["--retention-until", "2099-12-31"])
@@ -36,6 +39,42 @@ fn new_study(folder: &Path) -> PathBuf {
     folder.to_owned()
 }
 
+/// What is typed in the terminal to begin a session.
+const TICKS: &[u8] = b"y\ny\ny\nn\n";
+
+/// A session whose consent is typed in the terminal, with more arguments and more in the program's environment.
+fn run(service: &Service, study: &Path, more: &[&str], environment: &[(&str, &OsStr)]) -> Client {
+    let ticks = study.with_file_name("ticks");
+    fs::write(&ticks, TICKS).expect("writable");
+    let typed = File::open(&ticks).expect("just written").into();
+    run_told(service, study, more, environment, typed)
+}
+
+fn run_told(
+    service: &Service,
+    study: &Path,
+    more: &[&str],
+    environment: &[(&str, &OsStr)],
+    typed: Stdio,
+) -> Client {
+    let folder = study.to_str().expect("a plain path");
+    let arguments = [&["study", "run", folder, "--device", "headset"], more].concat();
+    Client::start_told(service, &arguments, environment, typed)
+}
+
+/// Enters the room of a session that begins, with more in the program's environment.
+pub fn sit_down(service: &Service, study: &Path, environment: &[(&str, &OsStr)]) -> (Client, Room) {
+    let mut client = run(service, study, &[], environment);
+    let room = enter(service, &mut client, study);
+    (client, room)
+}
+
+fn enter(service: &Service, client: &mut Client, study: &Path) -> Room {
+    client.wait_for("Recording into", PATIENCE);
+    let journal = experiment::files::list(&study.join("data/sourcedata")).expect("readable");
+    Room::follow_from(service, &journal[0])
+}
+
 /// The same session without a headset, which knows where the panel hangs for a head.
 struct Twin {
     session: Session,
@@ -44,7 +83,7 @@ struct Twin {
 
 impl Twin {
     fn new(folder: &Path, head: Tracked) -> Self {
-        let study = Study::open(&new_study(folder)).expect("just made");
+        let study = Study::open(&new_study(folder, &[])).expect("just made");
         let lock = study.lock().expect("nobody else has it");
         let participant = study.admit(&lock, 1).expect("a free slot").participant;
         let guest = Guest {
@@ -109,19 +148,8 @@ fn a_question_in_the_room_is_answered_by_pointing_and_the_trigger() {
     let Some(runtime) = runtime() else { return };
     let service = Service::start(&runtime, Compositor::Null);
     let out = tempfile::tempdir().expect("a temporary folder");
-    let study = new_study(&out.path().join("study"));
-    let ticks = out.path().join("ticks");
-    fs::write(&ticks, "y\ny\ny\nn\n").expect("writable");
-    let folder = study.to_str().expect("a plain path");
-    let mut client = Client::start_told(
-        &service,
-        &["study", "run", folder, "--device", "headset"],
-        &[],
-        File::open(&ticks).expect("just written").into(),
-    );
-    client.wait_for("Recording into", PATIENCE);
-    let journal = experiment::files::list(&study.join("data/sourcedata")).expect("readable");
-    let mut room = Room::follow_from(&service, &journal[0]);
+    let study = new_study(&out.path().join("study"), &[]);
+    let (client, mut room) = sit_down(&service, &study, &[]);
     let head = room.input.head.expect("it is tracked");
     let mut twin = Twin::new(&out.path().join("twin"), head);
     let age = Answer::Choice {
@@ -164,4 +192,44 @@ fn a_question_in_the_room_is_answered_by_pointing_and_the_trigger() {
     assert!(cell("model").is_some_and(|model| model != "n/a"), "{table}");
     // The null compositor shows 20 pictures a second.
     assert_eq!(cell("refresh_rate"), Some("20.000000"), "{table}");
+}
+
+/// The rate that the experimenter asks for reaches the runtime, which offers another one.
+#[test]
+fn a_study_asks_the_headset_for_a_refresh_rate() {
+    let Some(runtime) = runtime() else { return };
+    let service = Service::start(&runtime, Compositor::Null);
+    let out = tempfile::tempdir().expect("a temporary folder");
+    let study = new_study(&out.path().join("study"), &[]);
+    let client = run(&service, &study, &["--refresh-rate", "90"], &[]);
+    let (status, said) = client.wait();
+    assert!(!status.success(), "{said}");
+    assert!(said.contains("90 Hz") && said.contains("20"), "{said}");
+}
+
+/// The experimenter is told how tracking fares: a head that is lost alone is one loss, and the hand's none.
+#[test]
+fn a_lost_head_is_counted_for_the_experimenter() {
+    let Some(runtime) = runtime() else { return };
+    let service = Service::start(&runtime, Compositor::Null);
+    let out = tempfile::tempdir().expect("a temporary folder");
+    let study = new_study(&out.path().join("study"), &[]);
+    let (typed, mut terminal) = std::io::pipe().expect("a pipe");
+    let mut client = run_told(&service, &study, &[], &[], typed.into());
+    terminal.write_all(TICKS).expect("the program reads");
+    let mut room = enter(&service, &mut client, &study);
+    let head = room.packet.head;
+    room.packet.head.position = DVec3::splat(f64::NAN);
+    room.send();
+    room.wait_until("the loss", |room| room.input.head.is_none());
+    terminal.write_all(b"/status\n").expect("the program reads");
+    client.wait_for("Head LOST for", PATIENCE);
+    client.wait_for("Hand tracked.", PATIENCE);
+    room.packet.head = head;
+    room.send();
+    room.wait_until("the head", |room| room.input.head.is_some());
+    terminal.write_all(b"/status\n").expect("the program reads");
+    client.wait_for("Head tracked (lost once, ", PATIENCE);
+    let (status, said) = client.finish();
+    assert!(status.success(), "{said}");
 }

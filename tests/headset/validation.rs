@@ -5,6 +5,9 @@ use std::path::PathBuf;
 
 use tempfile::TempDir;
 
+/// The name of OpenXR's layer.
+pub const CORE_VALIDATION: &str = "XR_APILAYER_LUNARG_core_validation";
+
 /// The layers of one program.
 pub struct Layers {
     folder: TempDir,
@@ -22,10 +25,7 @@ impl Layers {
     pub fn environment(&self) -> [(&'static str, OsString); 4] {
         let text = |text: &str| OsStr::new(text).to_owned();
         [
-            (
-                "XR_ENABLE_API_LAYERS",
-                text("XR_APILAYER_LUNARG_core_validation"),
-            ),
+            ("XR_ENABLE_API_LAYERS", text(CORE_VALIDATION)),
             ("XR_CORE_VALIDATION_EXPORT_TYPE", text("text")),
             ("XR_CORE_VALIDATION_FILE_NAME", self.log().into_os_string()),
             ("VK_INSTANCE_LAYERS", text("VK_LAYER_KHRONOS_validation")),
