@@ -2,6 +2,7 @@
 //! by keys and mouse, simple ones that move by themselves.
 
 use std::path::Path;
+use std::time::Instant;
 
 use bowling_app::journal::InputLine;
 use game::{Button, Input};
@@ -115,8 +116,10 @@ impl Story {
 
     /// Reads on until a line holds something; whatever comes is kept.
     fn wait_until(&mut self, what: &str, holds: impl Fn(&Value) -> bool) {
+        let begun = Instant::now();
         loop {
-            let line = self.journal.next_within(PATIENCE);
+            let left = PATIENCE.saturating_sub(begun.elapsed());
+            let line = self.journal.next_within(left).filter(|_| !left.is_zero());
             let line = line.unwrap_or_else(|| panic!("{what} did not come about"));
             let line: Value = serde_json::from_str(&line).expect("a line of JSON");
             self.said.push(line);
