@@ -84,3 +84,33 @@ pub(super) fn vector(v: xr::Vector3f) -> DVec3 {
 pub(super) fn rotation(q: xr::Quaternionf) -> DQuat {
     DQuat::from_xyzw(q.x.into(), q.y.into(), q.z.into(), q.w.into()).normalize()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Monado's drivers always know the head's place; what a runtime that has lost it says is seen here.
+    #[test]
+    fn what_the_runtime_does_not_know_is_not_tracked() {
+        use xr::{SpaceLocationFlags as Known, SpaceVelocityFlags as Moves};
+        let one = xr::Vector3f {
+            x: 1.0,
+            y: 0.0,
+            z: 0.0,
+        };
+        let read = |known, moves| tracked((known, xr::Posef::IDENTITY), (moves, one, one));
+        let place = Known::POSITION_VALID | Known::ORIENTATION_VALID;
+        let both = Moves::LINEAR_VALID | Moves::ANGULAR_VALID;
+        for lost in [
+            Known::EMPTY,
+            Known::POSITION_VALID,
+            Known::ORIENTATION_VALID | Known::ORIENTATION_TRACKED,
+        ] {
+            assert_eq!(read(lost, both), None, "{lost:?}");
+        }
+        let seen = read(place, both).expect("inferred is as good as tracked");
+        assert_eq!(seen.velocity, Some([DVec3::X; 2]));
+        let still = read(place, Moves::LINEAR_VALID).expect("its place is known");
+        assert_eq!(still.velocity, None, "half a velocity is none");
+    }
+}
