@@ -102,7 +102,7 @@ pub fn weights(game: &Game, words: &Words, eye: DVec3) -> Vec<Sign> {
 #[derive(Clone, Debug, Default)]
 pub struct Track {
     /// Where it touched the lane, world frame [m].
-    points: Vec<DVec3>,
+    pub points: Vec<DVec3>,
 }
 
 impl Track {

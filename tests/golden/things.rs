@@ -2,15 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
-use bowling_app::convert::{self, HandLook, HandShape};
+use bowling_app::convert::{self, HandLook, HandShape, Scores};
 use bowling_app::fence::{self, Space};
 use bowling_app::hints::Grip;
 use bowling_app::labels;
 use bowling_app::look::{Stage, places};
+use bowling_app::practice::Track;
 use bowling_app::signs::{Sign, SignStock};
 use bowling_app::words::Words;
 use bowling_app::wrist::{Arms, Wrist};
-use game::{Conditions, Game, Input, Model, Tracked, Visible};
+use game::{Conditions, Game, Input, MAX_FRAMES, Model, ThrowSeen, Tracked, Visible};
 use glam::{DQuat, DVec3};
 use image::{DynamicImage, RgbImage};
 use physics::Pose;
@@ -33,11 +34,15 @@ struct Album {
 
 impl Album {
     fn open(name: &str, settings: &[&str]) -> Self {
+        Self::open_scene("alley", name, settings)
+    }
+
+    fn open_scene(scene: &str, name: &str, settings: &[&str]) -> Self {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         let gpu =
             Gpu::new(BackendChoice::Auto).expect("a graphics driver: install mesa-vulkan-drivers");
         let settings: Vec<String> = settings.iter().map(|text| (*text).to_owned()).collect();
-        let stage = Stage::open(&gpu, root, "alley", &settings).expect("a shipped scene");
+        let stage = Stage::open(&gpu, root, scene, &settings).expect("a shipped scene");
         Self {
             gpu,
             stage,
@@ -87,6 +92,51 @@ impl Album {
         assert!(!agrees(&without, &with), "{name}: on and off look the same");
         let problem = check(name, "left", &with, &self.kept);
         self.problems.extend(problem.err());
+    }
+
+    /// Holds this scene, from a place, against its reference and against the scene with its usual settings.
+    fn compare_with_usual(&mut self, name: &str, place: &str) {
+        let (eyes, with) = self.at(place);
+        let mut usual = Self::open(&format!("golden-usual-{name}"), &[]);
+        // Meshes are numbered by the renderer that holds them: each scene is drawn by its own.
+        let (_, without) = usual.at(place);
+        let [without, with] = [usual.draw(&without, eyes[0]), self.draw(&with, eyes[0])];
+        assert!(!agrees(&without, &with), "{name}: on and off look the same");
+        let problem = check(name, "left", &with, &self.kept);
+        self.problems.extend(problem.err());
+    }
+
+    /// The buttons' names and the first hint, from the start.
+    fn compare_names_and_hint(&mut self, name: &str) {
+        let head = DVec3::new(0.0, 1.62, 0.0);
+        let game = standing(conditions(), head, None, 0.0);
+        let signs = labels::signs(&game, Grip::Trigger, &Words::shipped());
+        let signs = self.signs(&signs);
+        assert_eq!(signs.len(), 3, "two names and a hint");
+        let (eyes, without) = self.at("start");
+        let mut with = without.clone();
+        with.instances.extend(signs);
+        self.compare(name, eyes[0], &without, &with);
+    }
+
+    /// The panel at the wrist, which is looked at.
+    fn compare_wrist_panel(&mut self, name: &str) {
+        let mut wrist = Wrist::default();
+        let eye = DVec3::new(0.0, 1.62, 4.4);
+        let at = DVec3::new(-0.1, 1.25, 4.0);
+        let view = looking(eye, at + DVec3::Y * 0.1);
+        let arms = Arms {
+            head: Pose::new(eye, view.rotation.as_dquat()),
+            wrist: Pose::from_position(at),
+            pointer: None,
+        };
+        assert_eq!(wrist.attend(Some(arms), true, 0.0), None);
+        let panel = self.signs(&wrist.signs(false, &Words::shipped().pause));
+        assert_eq!(panel.len(), 2);
+        let (_, without) = self.at("start");
+        let mut with = without.clone();
+        with.instances.extend(panel);
+        self.compare(name, view, &without, &with);
     }
 
     fn close(self) {
@@ -186,51 +236,93 @@ fn glow_machine_and_a_pressed_button_are_seen() {
 #[test]
 fn signs_fence_and_oil_are_seen() {
     let mut album = Album::open("golden-signs", &[]);
-    let words = Words::shipped();
-    let head = DVec3::new(0.0, 1.62, 0.0);
-    let (eyes, without) = album.at("start");
-    let game = standing(conditions(), head, None, 0.0);
-    let signs = album.signs(&labels::signs(&game, Grip::Trigger, &words));
-    assert_eq!(signs.len(), 3, "two names and a hint");
-    let mut with = without.clone();
-    with.instances.extend(signs);
-    album.compare("with-names-and-hint", eyes[0], &without, &with);
+    album.compare_names_and_hint("with-names-and-hint");
 
     // The head is 0.2 m before the edge of a space of 1.2 m, which lies before the eyes of the picture.
     let near = standing(conditions(), DVec3::new(0.0, 1.62, -0.4), None, 0.0);
     let space = Space::of_settings([1.2, 1.2]).expect("it has an end");
     let bars = fence::instances(&near, Some(&space), &[], &album.stage.stock);
+    let (eyes, without) = album.at("start");
     let mut with = without.clone();
     with.instances.extend(bars);
     album.compare("with-fence", eyes[0], &without, &with);
 
-    let mut wrist = Wrist::default();
-    let eye = DVec3::new(0.0, 1.62, 4.4);
-    let at = DVec3::new(-0.1, 1.25, 4.0);
-    let view = looking(eye, at + DVec3::Y * 0.1);
-    let arms = Arms {
-        head: Pose::new(eye, view.rotation.as_dquat()),
-        wrist: Pose::from_position(at),
-        pointer: None,
-    };
-    assert_eq!(wrist.attend(Some(arms), true, 0.0), None);
-    let panel = album.signs(&wrist.signs(false, &words.pause));
-    assert_eq!(panel.len(), 2);
-    let mut with = without.clone();
-    with.instances.extend(panel);
-    album.compare("with-wrist-panel", view, &without, &with);
+    album.compare_wrist_panel("with-wrist-panel");
     album.close();
 
     let mut oiled = Album::open("golden-oil", &["practice.shows_lane=true"]);
-    let mut plain = Album::open("golden-no-oil", &[]);
-    let (eyes, with) = oiled.at("foul line");
-    // Meshes are numbered by the renderer that holds them: each scene is drawn by its own.
-    let (_, without) = plain.at("foul line");
-    let [without, with] = [plain.draw(&without, eyes[0]), oiled.draw(&with, eyes[0])];
-    assert!(!agrees(&without, &with), "oil: on and off look the same");
-    let problem = check("with-oil", "left", &with, &oiled.kept);
-    oiled.problems.extend(problem.err());
+    oiled.compare_with_usual("with-oil", "foul line");
+
+    // A hook, as the last ball rolled it.
+    let point = |step: u32| {
+        let share = f64::from(step) / 60.0;
+        DVec3::new(
+            0.3 - 1.1 * share + 0.9 * share * share,
+            0.0,
+            -0.5 - 17.5 * share,
+        )
+    };
+    let track = Track {
+        points: (0..=60).map(point).collect(),
+    };
+    let (eyes, without) = oiled.at("foul line");
+    let mut with = without.clone();
+    with.instances.extend(track.instances(&oiled.stage.stock));
+    oiled.compare("with-way-of-the-ball", eyes[0], &without, &with);
     oiled.close();
+}
+
+#[test]
+fn a_helped_hand_has_another_colour() {
+    let mut helped = Album::open("golden-helped", &["release.assist_share=0.5"]);
+    helped.compare_with_usual("with-helped-hand", "desk");
+    helped.close();
+}
+
+#[test]
+fn the_scoreboard_tells_how_a_ball_was_let_go_and_with_how_much_help() {
+    let mut album = Album::open("golden-board", &[]);
+    let view = looking(DVec3::new(0.0, 1.7, 1.3), DVec3::new(0.0, 2.4, -0.9));
+    let scene = album.room_with(|_| ());
+    let mut scores = Scores::empty(MAX_FRAMES);
+    let seen = |album: &mut Album, scores: &Scores| {
+        let Stage {
+            renderer, stock, ..
+        } = &mut album.stage;
+        stock.show_scores(renderer, scores).expect("painted");
+        album.draw(&scene, view)
+    };
+    let mut earlier = seen(&mut album, &scores);
+    scores.throw = Some(ThrowSeen {
+        speed: 6.84,
+        angle: -0.02,
+        turns: 3.1,
+        is_foul: false,
+    });
+    let told = seen(&mut album, &scores);
+    scores.assist = 50;
+    let helped = seen(&mut album, &scores);
+    for (name, image) in [("with-throw-told", told), ("with-help-told", helped)] {
+        assert!(!agrees(&earlier, &image), "{name}: looks as before");
+        let problem = check(name, "left", &image, &album.kept);
+        album.problems.extend(problem.err());
+        earlier = image;
+    }
+    album.close();
+}
+
+#[test]
+fn texts_are_read_where_faces_have_one_colour() {
+    for scene in ["plain-1996", "test"] {
+        let mut album = Album::open_scene(scene, &format!("golden-{scene}-signs"), &[]);
+        album.compare_names_and_hint(&format!("{scene}-with-names-and-hint"));
+        album.compare_wrist_panel(&format!("{scene}-with-wrist-panel"));
+        assert_eq!(
+            album.stage.renderer.passes(),
+            ["flat", "flat with pictures"]
+        );
+        album.close();
+    }
 }
 
 #[test]

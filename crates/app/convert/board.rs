@@ -34,8 +34,9 @@ struct Row {
 pub struct Scores {
     rows: [Row; 2],
     /// Help that throws get [percent]; what is not studied must not be had unseen.
-    assist: u32,
-    throw: Option<ThrowSeen>,
+    pub assist: u32,
+    /// How the last ball was let go, where a participant is told.
+    pub throw: Option<ThrowSeen>,
 }
 
 impl Scores {

@@ -165,8 +165,8 @@ impl Stock {
         config: &Config,
     ) -> Result<()> {
         let shows = &config.shows;
-        // Without furnishings there is no screen, without materials no picture on it.
-        if shows.replay && shows.furnishings && shows.materials {
+        // Without furnishings there is no screen.
+        if shows.replay && shows.furnishings {
             self.screen = Some(Screen::new(renderer, root, config)?);
         }
         Ok(())

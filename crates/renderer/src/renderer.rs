@@ -39,7 +39,7 @@ pub struct RendererSettings {
     pub occlusion: bool,
     /// Textures have smaller copies for the distance, and highlights are as wide as a pixel needs; without, both sparkle.
     pub filtered: bool,
-    /// One colour a face: no textures, gloss, shadows, reflection or occlusion, whatever else is asked for.
+    /// One colour a face: no gloss, shadows, reflection or occlusion, whatever else is asked for, and no textures but of pictures.
     pub flat: bool,
 }
 
@@ -162,7 +162,8 @@ impl Renderer {
         names.extend(self.depth.as_ref().map(|_| "depth"));
         names.extend(self.hidden.as_ref().map(|_| "hidden"));
         names.extend(self.lit.iter().map(|pass| match pass.shading {
-            Shading::Flat => "flat",
+            Shading::Flat { has_pictures: true } => "flat with pictures",
+            Shading::Flat { .. } => "flat",
             Shading::Smooth(lookups) if lookups.occlusion => "lit with occlusion",
             Shading::Smooth(_) => "lit",
         }));
@@ -224,12 +225,18 @@ impl Renderer {
         }
     }
 
-    /// What this frame looks up: what the settings allow and the scene calls for.
-    fn lookups(&self, scene: &Scene) -> Option<Lookups> {
+    /// How this frame's surfaces are drawn: with what the settings allow and the scene calls for.
+    fn shading(&self, scene: &Scene) -> Shading {
         let settings = &self.settings;
+        if settings.flat {
+            let mut materials = scene.instances.iter().map(|one| &one.material);
+            return Shading::Flat {
+                has_pictures: materials.any(|material| material.texture.is_some()),
+            };
+        }
         let is_glossy = || scene.instances.iter().any(|one| one.material.mirror > 0.0);
         let has_occlusion = !scene.occluders.is_empty() || scene.enclosure.is_some();
-        (!settings.flat).then(|| Lookups {
+        Shading::Smooth(Lookups {
             shadows: settings.shadow_size > 0 && scene.light.is_some(),
             mirror: settings.reflection && is_glossy(),
             occlusion: settings.occlusion && has_occlusion,
@@ -239,8 +246,9 @@ impl Renderer {
     /// Makes the passes that this frame needs, and no others.
     fn fit_passes(&mut self, scene: &Scene, light: Option<&LightFrame>, size: [u32; 2]) {
         let device = &self.gpu.device;
-        let lookups = self.lookups(scene);
-        self.frame.lookups = lookups;
+        let shading = self.shading(scene);
+        let lookups = shading.lookups();
+        self.frame.shading = shading;
         let mut inputs = LitInputs {
             eyes: &self.eyes,
             lighting: &self.lighting,
@@ -251,14 +259,14 @@ impl Renderer {
             widen_highlights: self.settings.filtered,
         };
         let mut is_new = false;
-        if lookups.is_some_and(|lookups| lookups.mirror) {
+        if lookups.mirror {
             let mirror = self
                 .mirror
                 .get_or_insert_with(|| MirrorPass::new(device, &inputs, size));
             is_new |= mirror.fit(device, size);
             inputs.mirror_map = Some((&mirror.map.view, &mirror.sampler));
         }
-        if let (true, Some(light)) = (lookups.is_some_and(|lookups| lookups.shadows), light) {
+        if let (true, Some(light)) = (lookups.shadows, light) {
             let size = self.settings.shadow_size;
             let shadow = self
                 .shadow
@@ -266,7 +274,6 @@ impl Renderer {
             is_new |= shadow.fit(device, size, light);
             inputs.shadow_map = Some(&shadow.map.view);
         }
-        let shading = lookups.map_or(Shading::Flat, Shading::Smooth);
         if is_new {
             // The others hold the maps that there were; one of them that is called for again is made anew.
             self.lit.retain(|pass| pass.shading == shading);
@@ -295,7 +302,7 @@ impl Renderer {
         for (index, view) in views.iter().enumerate() {
             let eye = EyeRaw::of_view(view, size, mirror::map_size(size));
             write(index, &eye);
-            if self.frame.lookups.is_some_and(|lookups| lookups.mirror) {
+            if self.frame.shading.lookups().mirror {
                 write(MAX_VIEWS + index, &eye.mirrored());
             }
         }

@@ -61,15 +61,18 @@ pub(crate) fn mirror() -> String {
     .concat()
 }
 
-/// One colour a face.
-pub(crate) fn flat() -> String {
-    [
+/// One colour a face, and pictures on some where a frame has any.
+pub(crate) fn flat(has_pictures: bool) -> String {
+    let mut texts = vec![
         file!("common"),
         file!("lighting"),
         file!("shadow_off"),
         file!("flat"),
-    ]
-    .concat()
+    ];
+    if has_pictures {
+        texts.extend([file!("look"), file!("picture")]);
+    }
+    texts.concat()
 }
 
 /// The depth of an eye with so many samples to a pixel, in an image with one.
@@ -96,7 +99,8 @@ mod tests {
             ("hidden".to_owned(), HIDDEN.to_owned()),
             ("vignette".to_owned(), VIGNETTE.to_owned()),
             ("mirror".to_owned(), mirror()),
-            ("flat".to_owned(), flat()),
+            ("flat".to_owned(), flat(false)),
+            ("flat with pictures".to_owned(), flat(true)),
             ("depth of one sample".to_owned(), depth(1)),
             ("depth of many samples".to_owned(), depth(4)),
         ];
@@ -167,12 +171,15 @@ mod tests {
             ..Lookups::default()
         };
         assert_eq!(bound(mirror).len(), plain.len() + 2);
-        let flat = parsed("flat", &flat());
-        let textures = flat
-            .global_variables
-            .iter()
-            .filter(|(_, variable)| variable.space == naga::AddressSpace::Handle);
-        assert_eq!(textures.count(), 0);
+        let textures = |has_pictures| {
+            let module = parsed("flat", &flat(has_pictures));
+            let variables = module.global_variables.iter();
+            variables
+                .filter(|(_, variable)| variable.space == naga::AddressSpace::Handle)
+                .count()
+        };
+        // A picture and its sampler.
+        assert_eq!([textures(false), textures(true)], [0, 2]);
     }
 
     #[test]

@@ -56,15 +56,63 @@ impl Targets {
 pub(crate) enum Shading {
     /// Lit, with these lookups.
     Smooth(Lookups),
-    /// One colour a face.
-    Flat,
+    /// One colour a face, and pictures where something in the frame has a texture.
+    Flat { has_pictures: bool },
+}
+
+impl Default for Shading {
+    /// With nothing to look up.
+    fn default() -> Self {
+        Self::Smooth(Lookups::default())
+    }
 }
 
 impl Shading {
-    fn lookups(self) -> Lookups {
+    pub fn lookups(self) -> Lookups {
         match self {
             Self::Smooth(lookups) => lookups,
-            Self::Flat => Lookups::default(),
+            Self::Flat { .. } => Lookups::default(),
+        }
+    }
+
+    /// Whether a texture is bound for each batch.
+    fn has_textures(self) -> bool {
+        !matches!(
+            self,
+            Self::Flat {
+                has_pictures: false
+            }
+        )
+    }
+
+    /// What a batch is drawn with.
+    fn kind(self, batch: &Batch) -> Kind {
+        match (self, batch.texture) {
+            (Self::Smooth(_), _) => Kind::Lit(batch.finish),
+            (Self::Flat { .. }, Some(_)) => Kind::Picture,
+            (Self::Flat { .. }, None) => Kind::Face,
+        }
+    }
+}
+
+/// What a pipeline is made for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    /// A lit surface of this finish.
+    Lit(Finish),
+    /// A face of one colour.
+    Face,
+    /// A picture among such faces.
+    Picture,
+}
+
+impl Kind {
+    /// Entry points of its shader, for vertices and for fragments.
+    fn entry_points(self) -> [&'static str; 2] {
+        match self {
+            Self::Lit(_) => ["vertex", "fragment"],
+            Self::Face => ["flat_vertex", "flat_fragment"],
+            Self::Picture => ["vertex", "picture_fragment"],
         }
     }
 }
@@ -75,8 +123,8 @@ pub(crate) struct LitPass {
     pub shading: Shading,
     module: wgpu::ShaderModule,
     pipeline_layout: wgpu::PipelineLayout,
-    /// One for each finish that was called for; one for all where faces have one colour.
-    pipelines: Vec<(Option<Finish>, wgpu::RenderPipeline)>,
+    /// One for each kind that was called for.
+    pipelines: Vec<(Kind, wgpu::RenderPipeline)>,
     layout: wgpu::BindGroupLayout,
     bind_group: wgpu::BindGroup,
 }
@@ -100,13 +148,14 @@ impl LitPass {
     pub fn new(device: &wgpu::Device, shading: Shading, inputs: &LitInputs<'_>) -> Self {
         let layout = frame_layout(device, shading.lookups());
         let bind_group = frame_bind_group(device, &layout, inputs);
-        let (text, groups) = match shading {
-            Shading::Smooth(lookups) => (
-                shaders::lit(lookups),
-                vec![Some(&layout), Some(inputs.texture_layout)],
-            ),
-            Shading::Flat => (shaders::flat(), vec![Some(&layout)]),
+        let text = match shading {
+            Shading::Smooth(lookups) => shaders::lit(lookups),
+            Shading::Flat { has_pictures } => shaders::flat(has_pictures),
         };
+        let mut groups = vec![Some(&layout)];
+        if shading.has_textures() {
+            groups.push(Some(inputs.texture_layout));
+        }
         let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("lit"),
             bind_group_layouts: &groups,
@@ -125,31 +174,25 @@ impl LitPass {
     /// Makes the pipelines that these batches call for, unless they are there.
     pub fn fit(&mut self, device: &wgpu::Device, batches: &[Batch], inputs: &LitInputs<'_>) {
         for batch in batches {
-            let finish = self.finish(batch);
-            if self.pipelines.iter().all(|(known, _)| *known != finish) {
-                let pipeline = self.pipeline(device, finish, inputs);
-                self.pipelines.push((finish, pipeline));
+            let kind = self.shading.kind(batch);
+            if self.pipelines.iter().all(|(known, _)| *known != kind) {
+                let pipeline = self.pipeline(device, kind, inputs);
+                self.pipelines.push((kind, pipeline));
             }
         }
-    }
-
-    fn finish(&self, batch: &Batch) -> Option<Finish> {
-        (self.shading != Shading::Flat).then_some(batch.finish)
     }
 
     fn pipeline(
         &self,
         device: &wgpu::Device,
-        finish: Option<Finish>,
+        kind: Kind,
         inputs: &LitInputs<'_>,
     ) -> wgpu::RenderPipeline {
-        let constants = finish.map_or(Vec::new(), |finish| {
-            self.constants(finish, inputs.widen_highlights)
-        });
-        let [vertex, fragment] = match finish {
-            Some(_) => ["vertex", "fragment"],
-            None => ["flat_vertex", "flat_fragment"],
+        let constants = match kind {
+            Kind::Lit(finish) => self.constants(finish, inputs.widen_highlights),
+            Kind::Face | Kind::Picture => Vec::new(),
         };
+        let [vertex, fragment] = kind.entry_points();
         device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("lit"),
             layout: Some(&self.pipeline_layout),
@@ -242,14 +285,14 @@ impl LitPass {
         pass.set_vertex_buffer(1, draw.instances.slice(..));
         let mut current = None;
         for batch in draw.batches {
-            let finish = self.finish(batch);
-            if current != Some(finish) {
-                let made = self.pipelines.iter().find(|(known, _)| *known == finish);
-                let (_, pipeline) = made.expect("the frame's finishes were fitted");
+            let kind = self.shading.kind(batch);
+            if current != Some(kind) {
+                let made = self.pipelines.iter().find(|(known, _)| *known == kind);
+                let (_, pipeline) = made.expect("the frame's batches were fitted");
                 pass.set_pipeline(pipeline);
-                current = Some(finish);
+                current = Some(kind);
             }
-            if self.shading != Shading::Flat {
+            if self.shading.has_textures() {
                 let texture = batch
                     .texture
                     .map_or(draw.white, |id| &draw.textures[id.0 as usize]);

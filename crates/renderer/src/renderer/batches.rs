@@ -2,8 +2,8 @@
 
 use super::Renderer;
 use crate::passes::Batch;
+use crate::passes::lit::Shading;
 use crate::scene::Scene;
-use crate::shaders::Lookups;
 use crate::uniforms::InstanceRaw;
 
 /// What `prepare` found out about the current frame; kept to reuse its memory.
@@ -14,8 +14,8 @@ pub(super) struct Frame {
     packed: Vec<InstanceRaw>,
     pub batches: Vec<Batch>,
     pub background: [f32; 3],
-    /// What this frame looks up; `None` when it is drawn flat.
-    pub lookups: Option<Lookups>,
+    /// How its surfaces are drawn.
+    pub shading: Shading,
     /// Whether the picture's edge is dark.
     pub has_vignette: bool,
 }

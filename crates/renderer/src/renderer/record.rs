@@ -2,7 +2,7 @@
 
 use super::{HiddenPass, LIGHT_EYE, MAX_VIEWS, Renderer, eye_offset};
 use crate::passes::hidden::HiddenMesh;
-use crate::passes::lit::{LitDraw, Shading};
+use crate::passes::lit::{LitDraw, LitPass};
 use crate::passes::mirror::MirrorDraw;
 use crate::{RenderError, Scene, View};
 
@@ -73,7 +73,7 @@ impl Renderer {
     }
 
     pub(crate) fn record_shadow(&self, encoder: &mut wgpu::CommandEncoder) {
-        let is_shadowed = self.frame.lookups.is_some_and(|lookups| lookups.shadows);
+        let is_shadowed = self.frame.shading.lookups().shadows;
         if let (true, Some(shadow)) = (is_shadowed, &self.shadow) {
             let offset = eye_offset(LIGHT_EYE) as u32;
             let batches = &self.frame.batches;
@@ -83,7 +83,7 @@ impl Renderer {
 
     /// The image in the floor for one eye; only that eye's lit pass may follow before the next one's.
     fn record_mirror(&self, encoder: &mut wgpu::CommandEncoder, index: usize) {
-        let is_glossy = self.frame.lookups.is_some_and(|lookups| lookups.mirror);
+        let is_glossy = self.frame.shading.lookups().mirror;
         let Some(mirror) = self.mirror.as_ref().filter(|_| is_glossy) else {
             return;
         };
@@ -108,8 +108,8 @@ impl Renderer {
         eye: EyeTarget<'_>,
     ) {
         self.record_mirror(encoder, index);
-        let shading = self.frame.lookups.map_or(Shading::Flat, Shading::Smooth);
-        let lit = self.lit.iter().find(|pass| pass.shading == shading);
+        let is_due = |pass: &&LitPass| pass.shading == self.frame.shading;
+        let lit = self.lit.iter().find(is_due);
         let lit = lit.expect("prepare made the pass of this frame");
         let targets = self.targets.as_ref().expect("the frame's size was fitted");
         lit.record(

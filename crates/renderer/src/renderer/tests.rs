@@ -120,6 +120,30 @@ fn what_is_off_or_not_called_for_has_no_pass() {
     assert_eq!(passes(flat, true), ["flat"]);
 }
 
+#[test]
+fn pictures_among_flat_faces_have_a_pass_from_the_first_on() {
+    for samples in [1, 4] {
+        let mut renderer = renderer(RendererSettings {
+            samples,
+            flat: true,
+            ..RendererSettings::default()
+        });
+        let mesh = renderer.add_mesh(&MeshData::quad(1.0, 1.0)).expect("good");
+        let sign = RgbaImage::from_pixel(2, 2, Rgba([9; 4]));
+        let sign = renderer.add_texture(&sign).expect("good");
+        let bare = called_for(vec![instance(mesh); 3], Some(sun()));
+        let mut signed = bare.clone();
+        signed.instances[1].material.texture = Some(sign);
+        let mut drawn = |scene: &Scene| {
+            renderer.render(scene, &[view()], 8, 8).expect("drawn");
+            renderer.passes()
+        };
+        assert_eq!(drawn(&bare), ["flat"]);
+        assert_eq!(drawn(&signed), ["flat", "flat with pictures"]);
+        assert_eq!(drawn(&bare), ["flat", "flat with pictures"]);
+    }
+}
+
 /// A headset's depth and hidden corners have passes of their own, from the frame on that wants them.
 #[test]
 fn depth_and_hidden_corners_are_drawn_where_they_are_wanted() {

@@ -1,6 +1,8 @@
 use image::Rgba;
 use renderer::glam::Vec3;
-use renderer::{Fov, Material, MeshData, RgbaImage, Scene, TextBlock, TextPainter, View};
+use renderer::{
+    Fov, Material, MeshData, RendererSettings, RgbaImage, Scene, TextBlock, TextPainter, View,
+};
 
 use crate::support::*;
 
@@ -40,15 +42,25 @@ fn quarters() -> RgbaImage {
 #[test]
 fn texture_stands_upright_and_keeps_its_bytes() {
     on_each_driver(|gpu| {
-        let mut renderer = renderer(gpu, PLAIN);
-        let picture = quarters();
-        let id = renderer.add_texture(&picture).expect("a good texture");
-        // One texel per pixel, so that the bytes come back; none is above the knee of the tone curve.
-        let image = shown(&mut renderer, id, ahead(2.0 * 0.5_f32.atan()), 1.0);
-        for (x, y) in [(4, 4), (28, 4), (4, 28), (28, 28)] {
-            let (seen, given) = (image.get_pixel(x, y), picture.get_pixel(x, y));
-            let off = (0..3).map(|i| seen[i].abs_diff(given[i])).max();
-            assert!(off <= Some(1), "({x}, {y}): {seen:?}, {given:?}");
+        let flat = RendererSettings {
+            flat: true,
+            ..PLAIN
+        };
+        for settings in [PLAIN, flat] {
+            let mut renderer = renderer(gpu, settings);
+            let picture = quarters();
+            let id = renderer.add_texture(&picture).expect("a good texture");
+            // One texel per pixel, so that the bytes come back; none is above the knee of the tone curve.
+            let image = shown(&mut renderer, id, ahead(2.0 * 0.5_f32.atan()), 1.0);
+            for (x, y) in [(4, 4), (28, 4), (4, 28), (28, 28)] {
+                let (seen, given) = (image.get_pixel(x, y), picture.get_pixel(x, y));
+                let off = (0..3).map(|i| seen[i].abs_diff(given[i])).max();
+                let flat = settings.flat;
+                assert!(
+                    off <= Some(1),
+                    "({x}, {y}), flat {flat}: {seen:?}, {given:?}"
+                );
+            }
         }
     });
 }
