@@ -9,6 +9,7 @@ pub(crate) mod board;
 mod console;
 pub mod experimenter;
 pub(crate) mod folder;
+mod form;
 mod gate;
 mod manage;
 mod pane;

@@ -24,7 +24,7 @@ use winit::window::{Window, WindowId};
 use super::board::{FAINT, GROUND, LETTERS, ON, WARNING};
 use super::console::Console;
 use super::pane::Pane;
-use super::today;
+use super::{form, today};
 
 /// Size of the window at first [points].
 const SIZE: (f64, f64) = (640.0, 700.0);
@@ -191,7 +191,7 @@ impl Gate<'_> {
 }
 
 /// The form above, the ticks below.
-fn show(ui: &mut egui::Ui, form: &ConsentForm, ticks: &mut Ticks, done: &mut Option<Done>) {
+fn show(ui: &mut egui::Ui, consent: &ConsentForm, ticks: &mut Ticks, done: &mut Option<Done>) {
     let frame = egui::Frame::new().fill(GROUND).inner_margin(14.0);
     egui::Panel::bottom("ticks")
         .exact_size(STRIP)
@@ -199,12 +199,12 @@ fn show(ui: &mut egui::Ui, form: &ConsentForm, ticks: &mut Ticks, done: &mut Opt
         .frame(frame)
         .show(ui, |ui| {
             ui.visuals_mut().override_text_color = Some(LETTERS);
-            tick(ui, form, ticks, done);
+            tick(ui, consent, ticks, done);
         });
     egui::CentralPanel::default().frame(frame).show(ui, |ui| {
         ui.visuals_mut().override_text_color = Some(LETTERS);
         egui::ScrollArea::vertical().show(ui, |ui| {
-            ui.label(RichText::new(&form.text).size(15.0));
+            form::show(ui, &consent.text);
         });
     });
 }
