@@ -117,6 +117,9 @@ impl Album {
         let mut with = without.clone();
         with.instances.extend(signs);
         self.compare(name, eyes[0], &without, &with);
+        // From where they are so large that one is not taken for the other.
+        let near = looking(DVec3::new(-0.9, 1.25, 2.6), DVec3::new(-1.1, 1.0, 1.8));
+        self.compare(&format!("{name}-near"), near, &without, &with);
     }
 
     /// The panel at the wrist, which is looked at.
