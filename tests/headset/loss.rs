@@ -58,7 +58,7 @@ fn bring_back(service: &mut Service, room: &mut Room, client: &mut Client) {
     client.wait_for("Connected to the headset again", PATIENCE);
 }
 
-fn replays(session: &Path) {
+pub fn replays(session: &Path) {
     let output = std::process::Command::new(env!("CARGO_BIN_EXE_bowling"))
         .args(["--root", env!("CARGO_MANIFEST_DIR"), "replay"])
         .arg(session)

@@ -9,6 +9,7 @@ use glam::DVec3;
 use serde_json::{Value, json};
 
 use crate::client::Client;
+use crate::loss::replays;
 use crate::machine::runtime;
 use crate::room::{Hand, PATIENCE, Released, Room, Swing};
 use crate::service::{Compositor, Service};
@@ -37,9 +38,20 @@ pub fn start_with(
     environment: &[(&str, &OsStr)],
     settings: &[&str],
 ) -> Client {
+    start_game(service, folder, (scene, "1"), environment, settings)
+}
+
+/// As [`start_with`], in a game of so many frames.
+fn start_game(
+    service: &Service,
+    folder: &Path,
+    (scene, frames): (&str, &str),
+    environment: &[(&str, &OsStr)],
+    settings: &[&str],
+) -> Client {
     let folder = folder.to_str().expect("a plain path");
-    let mut arguments = vec!["play", "--device", "headset", "--frames", "1", "--no-video"];
-    arguments.extend(["--scene", scene, "--out", folder]);
+    let mut arguments = vec!["play", "--device", "headset", "--no-video"];
+    arguments.extend(["--frames", frames, "--scene", scene, "--out", folder]);
     arguments.extend(BESIDE_RACK);
     for setting in settings {
         arguments.extend(["--set", setting]);
@@ -115,6 +127,67 @@ fn has_its_poses(room: &mut Room, truth: Released, throws: usize) {
     );
 }
 
+/// Begins a game by the upper thumb button of the hand that does not throw.
+fn begin_red(room: &mut Room) {
+    room.packet.left.b = true;
+    room.send();
+    room.wait_until("a Red game", |room| room.count("game_started") == 1);
+    room.packet.left.b = false;
+    room.send();
+    let started = room.event("game_started").expect("just seen");
+    assert_eq!(started["button"], "red");
+}
+
+/// Takes a ball, carries it to the foul line, swings and lets go.
+fn bowl(room: &mut Room) -> Released {
+    room.take_ball(Hand::Right);
+    room.walk_to(Hand::Right, -0.2, 0.9);
+    let swing = Swing {
+        speed: 6.5,
+        release_at: 0.1,
+    };
+    swing.throw(room, Hand::Right)
+}
+
+/// Waits until so many throws are counted and the next may be made, back at the rack.
+fn await_pinsetter(room: &mut Room, throws: usize) {
+    room.wait_until("the pins counted", |room| room.count("settled") == throws);
+    room.wait_until("the pinsetter", |room| {
+        room.game.phase() == Phase::Ready || room.count("game_over") == 1
+    });
+    room.walk_to(Hand::Right, 0.6, 2.3);
+}
+
+/// Ten frames from a cold start to the final score; the replay of what was recorded is the same.
+#[test]
+fn a_whole_game_is_played() {
+    let Some(runtime) = runtime() else { return };
+    let service = Service::start(&runtime, Compositor::Null);
+    let out = tempfile::tempdir().expect("a temporary folder");
+    let folder = out.path().join("session");
+    let mut client = start_game(&service, &folder, ("test", "10"), &[], &[]);
+    let mut room = Room::enter(&service, &mut client, &folder);
+    begin_red(&mut room);
+    let mut throws = 0;
+    while room.count("game_over") == 0 {
+        assert!(throws < 21, "a game has twenty-one balls at most");
+        bowl(&mut room);
+        throws += 1;
+        await_pinsetter(&mut room, throws);
+    }
+    assert_eq!(room.count("frame_scored"), 10);
+    let total = room.event("game_over").expect("just seen")["total"].clone();
+    assert_eq!(
+        total,
+        room.event("frame_scored").expect("ten were")["total"]
+    );
+    let (status, said) = client.finish();
+    assert!(status.success(), "{said}");
+    let sheet = std::fs::read_to_string(folder.join("red-score.txt")).expect("a score sheet");
+    assert!(sheet.contains(&total.to_string()), "{total}: {sheet}");
+    replays(&folder);
+}
+
 /// A game of one frame: chosen by the buttons of the other hand, played to its score.
 #[test]
 fn a_whole_frame_is_played() {
@@ -137,34 +210,15 @@ fn a_whole_frame_is_played() {
     room.wait_until("a known controller", |room| {
         room.has_said("profile", "/interaction_profiles/valve/index_controller")
     });
-    // Red by the upper thumb button of the hand that does not throw.
-    room.packet.left.b = true;
-    room.send();
-    room.wait_until("a Red game", |room| room.count("game_started") == 1);
-    room.packet.left.b = false;
-    room.send();
-    assert_eq!(
-        room.event("game_started").expect("just seen")["button"],
-        "red"
-    );
-    let swing = Swing {
-        speed: 6.5,
-        release_at: 0.1,
-    };
+    begin_red(&mut room);
     let mut throws = 0;
     while room.count("frame_scored") == 0 {
         assert!(throws < 3, "a last frame has three balls at most");
-        room.take_ball(Hand::Right);
-        room.walk_to(Hand::Right, -0.2, 0.9);
-        let truth = swing.throw(&mut room, Hand::Right);
+        let truth = bowl(&mut room);
         throws += 1;
         agrees(&room, truth);
         has_its_poses(&mut room, truth, throws);
-        room.wait_until("the pins counted", |room| room.count("settled") == throws);
-        room.wait_until("the pinsetter", |room| {
-            room.game.phase() == Phase::Ready || room.count("game_over") == 1
-        });
-        room.walk_to(Hand::Right, 0.6, 2.3);
+        await_pinsetter(&mut room, throws);
     }
     // Written down once the runtime has taken them.
     let pulses = room.device("pulse");
