@@ -118,33 +118,42 @@ fn kill_again_and_again(seed: u64, session: u32, most: u32) -> u32 {
     kills
 }
 
-/// A frame scores and ends its game in one instant, and is written line by line: whoever is killed between two of these lines plays the
-/// frame again, instead of a game that is over and was never heard of to end.
+/// A frame scores and ends its game in one instant, and is written line by line: whoever is killed behind one of these lines plays from
+/// the mark before on, instead of a game that is over and was never heard of to end.
 #[test]
 fn a_kill_between_two_events_of_one_instant_loses_neither() {
     let kind = |entry: &Value| entry["event"]["event"].as_str().map(str::to_owned);
     let mut torn = BTreeSet::new();
-    let whole = entries(&journals(simulated())[0]);
-    for (line, two) in whole.windows(2).enumerate() {
-        let (Some(first), Some(_)) = (kind(&two[0]), kind(&two[1])) else {
-            continue;
-        };
-        let is_mark = ["settled", "game_started", "frame_scored", "game_over"];
-        if !is_mark.contains(&&*first) || !torn.insert(first.clone()) {
+    // How many inputs there were before the marks so far.
+    let (mut inputs, mut marks, mut has_begun) = (0, vec![0], false);
+    for (line, entry) in entries(&journals(simulated())[0]).iter().enumerate() {
+        inputs += u64::from(entry.get("input").is_some());
+        let Some(kind) = kind(entry) else { continue };
+        let is_training = kind == "settled" && !has_begun;
+        has_begun |= kind == "game_started";
+        if !is_training && !["game_started", "frame_scored", "game_over"].contains(&&*kind) {
             continue;
         }
-        let study = copy(&format!("torn-{first}"));
+        let before = marks.iter().rev().find(|mark| **mark < inputs);
+        let before = *before.expect("the beginning is one");
+        marks.push(inputs);
+        if !torn.insert(kind.clone()) {
+            continue;
+        }
+        let study = copy(&format!("torn-{kind}"));
         let journal = journals(&study).remove(0);
         let content = fs::read_to_string(&journal).expect("text");
         let kept: String = content.split_inclusive('\n').take(line + 1).collect();
         fs::write(&journal, kept).expect("writable");
         said(&["study", "resume", text(&study), "--device", "script"]);
+        let next = entries(&journal.with_file_name("session_part-2.jsonl"));
+        assert_eq!(next[0]["header"]["continues"]["inputs"], before, "{kind}");
         let listed = said(&["study", "status", text(&study)]);
-        assert_eq!(listed.matches("  complete").count(), 2, "{first}: {listed}");
+        assert_eq!(listed.matches("  complete").count(), 2, "{kind}: {listed}");
         let replayed = said(&["replay", text(journal.parent().expect("a folder"))]);
-        assert!(replayed.contains("agree."), "{first}: {replayed}");
+        assert!(replayed.contains("agree."), "{kind}: {replayed}");
     }
-    assert!(torn.contains("frame_scored"), "{torn:?}");
+    assert_eq!(torn.len(), 4, "{torn:?}");
 }
 
 /// Every journal that goes on begins where the one before it had its last complete frame, game or training throw.

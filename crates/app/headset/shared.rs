@@ -119,7 +119,7 @@ impl Shared {
 
     /// What is in sight, to be changed.
     pub fn sight(&self) -> MutexGuard<'_, Seen> {
-        // What a thread that panicked left is as whole as before: only single values are put in.
+        // What a thread that panicked left can be shown: its parts belong to two frames at most.
         self.seen.lock().unwrap_or_else(PoisonError::into_inner)
     }
 

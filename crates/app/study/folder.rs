@@ -117,15 +117,18 @@ impl Progress {
     /// # Errors
     /// When the settings are not there, or the game cannot be set up with them.
     pub fn cut(mut self) -> Result<(Continues, Story)> {
+        let whole = self.story.whole;
+        let events = self.story.events.iter().filter(|(at, _)| *at < whole);
+        let has_begun = events
+            .clone()
+            .any(|(_, event)| event["event"] == "game_started");
         let is_mark = |event: &serde_json::Value| match event["event"].as_str() {
             Some("frame_scored" | "game_started" | "game_over") => true,
             // A training throw; those of a game end with the frame.
-            Some("settled") => self.protocol.played().is_empty(),
+            Some("settled") => !has_begun,
             _ => false,
         };
-        let whole = self.story.whole;
-        let marks = self.story.events.iter();
-        let marks = marks.filter(|(at, event)| *at < whole && is_mark(event));
+        let marks = events.filter(|(_, event)| is_mark(event));
         let count = marks.map(|(at, _)| at + 1).max().unwrap_or(0);
         self.story.inputs.truncate(count);
         self.story.events.retain(|(at, _)| *at < count);
