@@ -31,15 +31,13 @@ const BELOW_EYES_M: f64 = 0.15;
 /// Radius of the dot that shows where one points [m].
 const DOT_M: f32 = 0.012;
 
-/// Where the participant points from: eye, hand and trigger.
+/// Where the participant points from.
 #[derive(Debug, Clone, Copy)]
 pub struct Pointing {
     /// The head, world frame.
     pub head: Pose,
     /// The hand, world frame.
     pub hand: Option<Pose>,
-    /// From 0 (open) to 1 (closed).
-    pub trigger: f64,
 }
 
 /// The panel, whether it is shown or not.
@@ -84,14 +82,14 @@ impl Panel {
         let (content, pointing) = (content(session, &self.words), session.pointing());
         self.stop.attend(session, pointing)?;
         self.show(content, pointing.map(|pointing| pointing.head));
+        // Also while nothing is asked: a trigger that is pulled already answers nothing.
+        let is_pressed = self.trigger.press(session.trigger());
         let (Some(shown), Some(pointing)) = (&mut self.shown, pointing) else {
-            self.trigger = Trigger::default();
             return Ok(());
         };
         shown.at = pointing
             .hand
             .and_then(|hand| pixel(&shown.pose, pointing.head.position, hand.position));
-        let is_pressed = self.trigger.press(pointing.trigger);
         let choice = shown.at.and_then(|at| shown.layout.choice(at)).cloned();
         match choice {
             Some(choice) if is_pressed => choose(&choice, session, self.answered_in),

@@ -213,8 +213,12 @@ impl Session {
         Some(Pointing {
             head: self.game.head_pose_world()?,
             hand: self.game.hand_pose_world(),
-            trigger: self.trigger,
         })
+    }
+
+    /// The trigger of the hand that plays, from 0 (open) to 1 (closed).
+    pub fn trigger(&self) -> f64 {
+        self.trigger
     }
 
     /// Time since the session began: simulated where a script plays, else measured [s].

@@ -159,12 +159,7 @@ fn the_panel_is_seen_where_it_is_pointed_at() {
             .expect("in sight");
         images[0].get_pixel(x as u32, y as u32).0
     };
-    let answer = |id: &str| {
-        Choice::Answer(Answer::Choice {
-            chosen: vec![id.to_owned()],
-            other: String::new(),
-        })
-    };
+    let answer = |band| Choice::Answer(age(band));
     // The box's edge, beside its words, is lighter than the ground between two boxes, and Stop is red.
     let place = |choice: &Choice| panel.place_of(choice).expect("it is shown");
     let (one, two) = (place(&answer("18-24")), place(&answer("25-34")));
@@ -175,40 +170,71 @@ fn the_panel_is_seen_where_it_is_pointed_at() {
     assert!(stop[0] > 2 * stop[2], "{stop:?}");
 }
 
+/// The item that is asked.
+fn item(session: &Session) -> Option<String> {
+    Some(session.form()?.current()?.id.clone())
+}
+
+fn age(band: &str) -> Answer {
+    Answer::Choice {
+        chosen: vec![band.to_owned()],
+        other: String::new(),
+    }
+}
+
+/// A frame of somebody who stands and points at `aim`.
+fn frame(session: &mut Session, panel: &mut Panel, aim: Option<DVec3>, trigger: f64) {
+    let head = Pose::from_position(DVec3::new(0.0, 1.7, 0.0));
+    // The hand is on the way from the eye to what it points at; both in the tracking space.
+    let to_tracking = session.game().world_from_tracking().inverse();
+    let at = aim.map_or(DVec3::new(0.3, 1.0, -0.2), |aim| {
+        head.position.lerp(to_tracking.transform_point(aim), 0.25)
+    });
+    let input = Input {
+        head: Some(Tracked::at(head)),
+        hand: Some(Tracked::at(Pose::from_position(at))),
+        trigger,
+        steps: 8,
+        ..Input::default()
+    };
+    session.frame(input).expect("writable");
+    panel.attend(session).expect("writable");
+}
+
+#[test]
+fn a_trigger_that_is_held_when_a_question_appears_answers_nothing() {
+    let (_, _, mut session) = seated("study-held");
+    let first = Choice::Answer(age("35-44"));
+    // Where it will hang, as it hangs for who stands there already.
+    let mut before = Panel::new(AnsweredIn::Headset, Words::shipped());
+    frame(&mut session, &mut before, None, 0.0);
+    let aim = before.place_of(&first).expect("it is shown");
+    let mut panel = Panel::new(AnsweredIn::Headset, Words::shipped());
+    // The head is not found: no question hangs anywhere.
+    let held = Input {
+        trigger: 1.0,
+        steps: 8,
+        ..Input::default()
+    };
+    session.frame(held).expect("writable");
+    panel.attend(&mut session).expect("writable");
+    assert_eq!(panel.place_of(&first), None);
+    for trigger in [1.0, 1.0, 0.0] {
+        frame(&mut session, &mut panel, Some(aim), trigger);
+        assert_eq!(panel.place_of(&first), Some(aim));
+        assert_eq!(item(&session).as_deref(), Some("age_band"));
+    }
+    frame(&mut session, &mut panel, Some(aim), 1.0);
+    assert_eq!(item(&session).as_deref(), Some("vr_before"));
+}
+
 #[test]
 fn a_hand_answers_by_pointing_and_stops_at_the_sign() {
     let (study, who, mut session) = seated("study-panel");
     let mut panel = Panel::new(AnsweredIn::Headset, Words::shipped());
-    let item = |session: &Session| {
-        let form = session.form()?;
-        Some(form.current()?.id.clone())
-    };
-    let frame = |session: &mut Session, panel: &mut Panel, aim: Option<DVec3>, trigger: f64| {
-        let head = Pose::from_position(DVec3::new(0.0, 1.7, 0.0));
-        // The hand is on the way from the eye to what it points at; both in the tracking space.
-        let to_tracking = session.game().world_from_tracking().inverse();
-        let at = aim.map_or(DVec3::new(0.3, 1.0, -0.2), |aim| {
-            head.position.lerp(to_tracking.transform_point(aim), 0.25)
-        });
-        let input = Input {
-            head: Some(Tracked::at(head)),
-            hand: Some(Tracked::at(Pose::from_position(at))),
-            trigger,
-            steps: 8,
-            ..Input::default()
-        };
-        session.frame(input).expect("writable");
-        panel.attend(session).expect("writable");
-    };
     frame(&mut session, &mut panel, None, 0.0);
     let answers = [
-        (
-            "age_band",
-            Answer::Choice {
-                chosen: vec!["35-44".to_owned()],
-                other: String::new(),
-            },
-        ),
+        ("age_band", age("35-44")),
         ("vr_before", Answer::YesNo(true)),
         ("sick_before", Answer::Scale(2)),
     ];

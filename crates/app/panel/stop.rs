@@ -39,7 +39,8 @@ impl StopSign {
         self.pose = is_played.then(|| over_the_desk(session.game()));
         let is_held = match (self.pose, pointing) {
             (Some(pose), Some(pointing)) => {
-                session.game().held().is_none() && is_on(&pose, &pointing)
+                let is_pulled = session.trigger() > PULLED;
+                is_pulled && session.game().held().is_none() && is_on(&pose, &pointing)
             }
             _ => false,
         };
@@ -55,12 +56,12 @@ impl StopSign {
     }
 }
 
-/// Whether the participant points at the sign with a closed trigger.
+/// Whether the participant points at the sign.
 fn is_on(sign: &Pose, pointing: &Pointing) -> bool {
     let at = pointing
         .hand
         .and_then(|hand| share(sign, SIZE_M, pointing.head.position, hand.position));
-    pointing.trigger > PULLED && at.is_some()
+    at.is_some()
 }
 
 /// Above the buttons, facing who stands on the approach.
