@@ -62,7 +62,10 @@ fn paragraphs(text: &str) -> Vec<Paragraph<'_>> {
         match paragraphs.last_mut() {
             _ if line.is_empty() => {}
             // A line that begins nothing goes on with what is open; so does the next line of an aside.
-            Some(last) if is_open && (kind == Kind::Plain || kind == Kind::Aside) => {
+            Some(last)
+                if is_open
+                    && (kind == Kind::Plain || kind == Kind::Aside && last.kind == Kind::Aside) =>
+            {
                 last.text.push(' ');
                 last.text.push_str(words);
             }
@@ -166,7 +169,7 @@ mod tests {
 
     #[test]
     fn a_form_is_headings_asides_items_and_paragraphs() {
-        let text = "# Form\n\n> For\n> you.\n\n**What.** One\ntwo.\n1. First\n   goes on\n2. Second\n\n- [ ] A tick";
+        let text = "# Form\n\n> For\n> you.\n\n**What.** One\ntwo.\n> By the way\n1. First\n   goes on\n2. Second\n\n- [ ] A tick";
         let read = paragraphs(text);
         let read: Vec<(Kind, &str, &str)> = read
             .iter()
@@ -178,6 +181,7 @@ mod tests {
                 (Kind::Heading, "", "Form"),
                 (Kind::Aside, "", "For you."),
                 (Kind::Plain, "", "**What.** One two."),
+                (Kind::Aside, "", "By the way"),
                 (Kind::Item, "1.", "First goes on"),
                 (Kind::Item, "2.", "Second"),
                 (Kind::Item, "-", "[ ] A tick"),
