@@ -12,7 +12,8 @@ mod write;
 use game::{Conditions, Input, Tracked, TriggerChange, Velocity};
 use glam::{DQuat, DVec3};
 use physics::Pose;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
+use serde_json::Value;
 
 pub use changes::Changes;
 pub use experiment::journal::SCHEMA;
@@ -21,22 +22,53 @@ pub use write::Journal;
 
 use crate::boundary::Refused;
 
-/// One line's content.
+/// One line's content: read as any version wrote it; written with the game's own events, and with what may still be put
+/// into words.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Entry {
+pub enum Entry<E = Value, D = Value> {
     /// The first line.
     Header(Box<Header>),
     /// What the game consumed in one frame.
     Input(InputLine),
     /// Something that happened in the frame of the last input line.
-    Event(serde_json::Value),
+    Event(E),
     /// What the device said of itself in that frame, or before the first. The game never reads it.
-    Device(serde_json::Value),
+    Device(D),
     /// What the experiment noted: a stage, an answer, a remark. The game never reads it.
-    Study(serde_json::Value),
+    Study(Value),
     /// The last line of a session that was closed in order.
     End(End),
+}
+
+/// What a device says: a value, or what the thread that writes puts into words, which takes a frame no time.
+pub enum Said {
+    /// A value.
+    Now(Value),
+    /// What makes one.
+    Later(Box<dyn Fn() -> Value + Send>),
+}
+
+impl Said {
+    /// What `words` will say.
+    pub fn later(words: impl Fn() -> Value + Send + 'static) -> Self {
+        Self::Later(Box::new(words))
+    }
+}
+
+impl From<Value> for Said {
+    fn from(value: Value) -> Self {
+        Self::Now(value)
+    }
+}
+
+impl Serialize for Said {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Now(value) => value.serialize(serializer),
+            Self::Later(words) => words().serialize(serializer),
+        }
+    }
 }
 
 /// What a session was.

@@ -3,7 +3,7 @@
 //! Derived: the same code makes it while a session runs and when a journal is played again, so a
 //! table that does not agree with its journal was changed.
 
-use std::fmt::Write;
+use std::fmt;
 
 use game::{Game, Input};
 use physics::Pose;
@@ -22,32 +22,50 @@ pub fn heading() -> String {
     columns.join("\t")
 }
 
-/// The row for the frame that `game` has just finished with `input`; `n/a` where not tracked.
-///
-/// Metres to the micrometre, `walking` is 1 forward, -1 backward, 0 neither.
-pub fn row(game: &Game, input: &Input) -> String {
-    let mut row = format!("{:.6}", game.time());
-    append_pose(&mut row, game.head_pose_world());
-    append_pose(&mut row, game.hand_pose_world());
-    let walking = i8::from(input.walk_forward) - i8::from(input.walk_back);
-    write!(row, "\t{:.4}\t{walking}", input.trigger).expect("a String takes everything");
-    row
+/// One row; shown, it is the table's line: metres to the micrometre, `n/a` where not tracked, `walking` 1 forward, -1 backward,
+/// 0 neither.
+#[derive(Debug, Clone, Copy)]
+pub struct Row {
+    time_s: f64,
+    head: Option<Pose>,
+    hand: Option<Pose>,
+    trigger: f64,
+    walking: i8,
 }
 
-fn append_pose(row: &mut String, pose: Option<Pose>) {
-    let Some(pose) = pose else {
-        row.push_str(&"\tn/a".repeat(7));
-        return;
-    };
-    for number in pose
-        .position
-        .to_array()
-        .into_iter()
-        .chain(pose.rotation.to_array())
-    {
-        // Adding zero turns -0 into 0.
-        write!(row, "\t{:.6}", number + 0.0).expect("a String takes everything");
+impl Row {
+    /// The row for the frame that `game` has just finished with `input`.
+    pub fn new(game: &Game, input: &Input) -> Self {
+        Self {
+            time_s: game.time(),
+            head: game.head_pose_world(),
+            hand: game.hand_pose_world(),
+            trigger: input.trigger,
+            walking: i8::from(input.walk_forward) - i8::from(input.walk_back),
+        }
     }
+}
+
+impl fmt::Display for Row {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:.6}", self.time_s)?;
+        for pose in [self.head, self.hand] {
+            write_pose(f, pose)?;
+        }
+        write!(f, "\t{:.4}\t{}", self.trigger, self.walking)
+    }
+}
+
+fn write_pose(f: &mut fmt::Formatter<'_>, pose: Option<Pose>) -> fmt::Result {
+    let Some(pose) = pose else {
+        return f.write_str(&"\tn/a".repeat(7));
+    };
+    let position = pose.position.to_array();
+    for number in position.into_iter().chain(pose.rotation.to_array()) {
+        // Adding zero turns -0 into 0.
+        write!(f, "\t{:.6}", number + 0.0)?;
+    }
+    Ok(())
 }
 
 /// Compares a table as it lies on disk, byte for byte, with one line after another as it should be.
@@ -135,19 +153,25 @@ mod tests {
     use glam::{DQuat, DVec3};
 
     #[test]
-    fn append_pose_writes_seven_columns_tracked_or_not() {
-        for pose in [
-            None,
-            Some(Pose {
-                position: DVec3::new(-0.0, 1.5, -1e-9),
-                rotation: DQuat::IDENTITY,
-            }),
-        ] {
-            let mut row = String::new();
-            append_pose(&mut row, pose);
-            assert_eq!(row.matches('\t').count(), 7, "{row}");
-        }
-        assert_eq!(heading().split('\t').count(), 1 + 2 * 7 + 2);
+    fn a_row_has_a_field_for_every_column_tracked_or_not() {
+        let head = Some(Pose {
+            position: DVec3::new(-0.0, 1.5, -0.25),
+            rotation: DQuat::IDENTITY,
+        });
+        let row = Row {
+            time_s: 0.25,
+            head,
+            hand: None,
+            trigger: 1.0,
+            walking: -1,
+        };
+        let zeros = "0.000000\t".repeat(3);
+        let expected = format!(
+            "0.250000\t0.000000\t1.500000\t-0.250000\t{zeros}1.000000{}\t1.0000\t-1",
+            "\tn/a".repeat(7)
+        );
+        assert_eq!(row.to_string(), expected);
+        assert_eq!(heading().split('\t').count(), expected.split('\t').count());
     }
 
     #[test]

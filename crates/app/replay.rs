@@ -8,7 +8,7 @@ use game::{Button, Conditions, EventKind, Game, Input};
 use serde_json::Value;
 
 use crate::journal::{self, Recording};
-use crate::motion::{self, Comparison};
+use crate::motion::{Comparison, Row};
 use crate::output::{JOURNAL, MOTION};
 use crate::session::sheet_text;
 use crate::study;
@@ -51,7 +51,8 @@ pub fn replay(folder: &Path) -> Result<()> {
             events.push((index, serde_json::to_value(event)?));
         }
         if let (Some(comparison), None) = (&mut comparison, &table_problem) {
-            table_problem = comparison.expect_line(&motion::row(&game, input)).err();
+            let row = Row::new(&game, input).to_string();
+            table_problem = comparison.expect_line(&row).err();
         }
     }
     check_result(&game, &started, &recording, &path)?;

@@ -7,7 +7,6 @@ mod asking;
 pub mod course;
 mod health;
 mod recording;
-mod rows;
 mod setup;
 
 use std::path::{Path, PathBuf};
@@ -19,7 +18,7 @@ use game::{Button, Conditions, DisplayProfileName, Event, EventKind, Game, Input
 use physics::{Stopwatch, Unwatched};
 
 use crate::boundary::{Boundary, Refused};
-use crate::journal::{self, Changes, End, Header, Journal};
+use crate::journal::{self, Changes, End, Header, Journal, Said};
 use crate::panel::Pointing;
 use crate::pictures::{Painter, Wanted};
 use course::Course;
@@ -230,12 +229,15 @@ impl Session {
     ///
     /// # Errors
     /// As [`Session::frame`].
-    pub fn device(&mut self, value: serde_json::Value) -> Result<()> {
-        self.health.hear(&value, Instant::now());
-        self.journal.device(value)
+    pub fn device(&mut self, said: impl Into<Said>) -> Result<()> {
+        let said = said.into();
+        if let Said::Now(value) = &said {
+            self.health.hear(value);
+        }
+        self.journal.device(said)
     }
 
-    /// A picture was shown, `missed` pictures after it was due; a headset says so by its own lines.
+    /// A picture was shown, `missed` pictures after it was due.
     pub fn picture(&mut self, missed: u64) {
         self.health.picture(Instant::now(), missed);
     }

@@ -3,7 +3,10 @@
 use std::time::Duration;
 
 use renderer::headset::Frame;
+use serde::Serialize;
 use serde_json::{Value, json};
+
+use crate::journal::Said;
 
 /// Frames so far, of the session and of the game that is played.
 #[derive(Debug, Default)]
@@ -21,6 +24,26 @@ struct Totals {
     taken_ms: Vec<f32>,
     /// How far ahead of its waking a frame was predicted [ms].
     predicted_ms: Vec<f32>,
+}
+
+/// What the journal keeps of a frame.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct FrameLine {
+    xr_time_ns: i64,
+    period_ms: f64,
+    prediction_ms: Option<f64>,
+    simulated_ms: f64,
+    taken_ms: f64,
+    /// Pictures that the display showed a second time before this one.
+    pub missed: u64,
+    /// Both eyes were located, drawn and handed over.
+    pub shown: bool,
+}
+
+impl From<FrameLine> for Said {
+    fn from(line: FrameLine) -> Self {
+        Self::later(move || json!({ "frame": line }))
+    }
 }
 
 /// A frame between its simulation and its end.
@@ -69,22 +92,22 @@ impl FrameTimes {
         self.last_display_ns = None;
     }
 
-    /// The frame's line for the journal; `is_shown` when both eyes were located, drawn and handed over.
-    pub fn finish(&mut self, timing: Timing, is_shown: bool) -> Value {
+    /// The frame's line; `is_shown` when both eyes were located, drawn and handed over.
+    pub fn finish(&mut self, timing: Timing, is_shown: bool) -> FrameLine {
         let taken = timing.woken.elapsed().as_secs_f64() * 1e3;
         for totals in [&mut self.session, &mut self.game] {
             totals.add(&timing, taken);
         }
         let rounded = |milliseconds: f64| (milliseconds * 1e3).round() / 1e3;
-        json!({ "frame": {
-            "xr_time_ns": timing.display_ns,
-            "period_ms": rounded(timing.period_s * 1e3),
-            "prediction_ms": timing.prediction_s.map(|seconds| rounded(seconds * 1e3)),
-            "simulated_ms": rounded(timing.simulated.as_secs_f64() * 1e3),
-            "taken_ms": rounded(taken),
-            "missed": timing.missed,
-            "shown": is_shown,
-        }})
+        FrameLine {
+            xr_time_ns: timing.display_ns,
+            period_ms: rounded(timing.period_s * 1e3),
+            prediction_ms: timing.prediction_s.map(|seconds| rounded(seconds * 1e3)),
+            simulated_ms: rounded(timing.simulated.as_secs_f64() * 1e3),
+            taken_ms: rounded(taken),
+            missed: timing.missed,
+            shown: is_shown,
+        }
     }
 
     /// A game begins: what was before is not its.

@@ -360,7 +360,13 @@ impl Player {
             }
         }
         let line = self.times.finish(timing, is_shown);
-        self.shared.note(line)?;
+        self.shared.with(|session| {
+            // What was not shown is no picture.
+            if line.shown {
+                session.picture(line.missed);
+            }
+            session.device(line)
+        })?;
         if happened.has_ended {
             self.shared.note(self.times.game_summary())?;
         }

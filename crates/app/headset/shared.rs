@@ -9,6 +9,7 @@ use game::Button;
 use renderer::View;
 
 use crate::again::Moment;
+use crate::journal::Said;
 use crate::scenery::hand::Fingers;
 use crate::session::Session;
 use crate::voice::Voice;
@@ -134,7 +135,7 @@ impl Shared {
         session.as_mut().map(act).transpose()
     }
 
-    pub fn note(&self, value: serde_json::Value) -> Result<()> {
-        self.with(|session| session.device(value)).map(|_| ())
+    pub fn note(&self, said: impl Into<Said>) -> Result<()> {
+        self.with(|session| session.device(said)).map(|_| ())
     }
 }

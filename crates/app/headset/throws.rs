@@ -8,6 +8,8 @@ use std::collections::VecDeque;
 use renderer::headset::{BareHand, Change, HandReading, Readings, TrackedPose};
 use serde_json::{Value, json};
 
+use crate::journal::Said;
+
 /// How far before a release readings are kept [ns].
 const BEFORE: i64 = 200_000_000;
 /// How far behind it they are taken down [ns].
@@ -26,7 +28,43 @@ pub struct Throws {
 struct Thrown {
     step: u64,
     display_ns: i64,
-    readings: Vec<Value>,
+    readings: Vec<(i64, Readings)>,
+}
+
+/// What the journal keeps around a throw that was let go at a step.
+#[derive(Debug)]
+pub enum Line {
+    /// Time of display [ns], and what was read up to then.
+    Throw(u64, i64, Vec<(i64, Readings)>),
+    /// What was read behind it.
+    AfterThrow(u64, Vec<(i64, Readings)>),
+}
+
+impl Line {
+    fn value(&self) -> Value {
+        let read = |all: &[(i64, Readings)]| -> Vec<Value> {
+            all.iter()
+                .map(|(at, readings)| reading(*at, readings))
+                .collect()
+        };
+        match self {
+            Self::Throw(step, display_ns, readings) => json!({ "throw": {
+                "step": step,
+                "xr_time_ns": display_ns,
+                "readings": read(readings),
+            }}),
+            Self::AfterThrow(step, readings) => json!({ "after_throw": {
+                "step": step,
+                "readings": read(readings),
+            }}),
+        }
+    }
+}
+
+impl From<Line> for Said {
+    fn from(line: Line) -> Self {
+        Self::later(move || line.value())
+    }
 }
 
 impl Throws {
@@ -37,12 +75,12 @@ impl Throws {
         display_ns: i64,
         readings: &Readings,
         released: Option<u64>,
-    ) -> Vec<Value> {
+    ) -> Vec<Line> {
         let mut due = Vec::new();
         if let Some(thrown) = &mut self.thrown {
             let is_over = display_ns > thrown.display_ns + AFTER;
             if !is_over {
-                thrown.readings.push(line(display_ns, readings));
+                thrown.readings.push((display_ns, *readings));
             }
             if is_over || released.is_some() {
                 due.extend(self.finish());
@@ -52,12 +90,7 @@ impl Throws {
         if let Some(step) = released {
             let begin = let_go_ns(display_ns, readings) - BEFORE;
             let seen = self.recent.iter().filter(|(at, _)| *at >= begin);
-            let seen: Vec<Value> = seen.map(|(at, readings)| line(*at, readings)).collect();
-            due.push(json!({ "throw": {
-                "step": step,
-                "xr_time_ns": display_ns,
-                "readings": seen,
-            }}));
+            due.push(Line::Throw(step, display_ns, seen.copied().collect()));
             self.thrown = Some(Thrown {
                 step,
                 display_ns,
@@ -71,12 +104,9 @@ impl Throws {
     }
 
     /// The last throw's line, whatever is still missing of its time: nothing more will be read.
-    pub fn finish(&mut self) -> Option<Value> {
+    pub fn finish(&mut self) -> Option<Line> {
         let thrown = self.thrown.take()?;
-        Some(json!({ "after_throw": {
-            "step": thrown.step,
-            "readings": thrown.readings,
-        }}))
+        Some(Line::AfterThrow(thrown.step, thrown.readings))
     }
 }
 
@@ -87,7 +117,7 @@ fn let_go_ns(display_ns: i64, readings: &Readings) -> i64 {
     times.min().map_or(display_ns, |at| at.min(display_ns))
 }
 
-fn line(display_ns: i64, readings: &Readings) -> Value {
+fn reading(display_ns: i64, readings: &Readings) -> Value {
     let [left, right] = readings.hands.each_ref().map(hand);
     json!({ "xr_time_ns": display_ns, "left": left, "right": right })
 }
@@ -165,7 +195,7 @@ mod tests {
         for frame in 0..70 {
             let released = (frame == 50).then_some(4000);
             for line in throws.follow(frame * FRAME, &readings(frame), released) {
-                said.push((frame, line));
+                said.push((frame, line.value()));
             }
         }
         let [(50, thrown), (60, after)] = said.as_slice() else {
@@ -190,7 +220,8 @@ mod tests {
             });
             said = throws.follow(frame * FRAME, &readings, (frame == 50).then_some(1));
         }
-        let thrown = &said[0]["throw"];
+        let thrown = said[0].value();
+        let thrown = &thrown["throw"];
         assert_eq!(frames(thrown), (27..=50).collect::<Vec<_>>());
         let last = &thrown["readings"][23]["right"]["changes"];
         assert_eq!(last[0]["xr_time_ns"], 45 * FRAME);
@@ -202,9 +233,9 @@ mod tests {
         let mut throws = Throws::default();
         assert_eq!(throws.follow(0, &readings(0), Some(1)).len(), 1);
         let lines = throws.follow(FRAME, &readings(1), Some(2));
-        assert_eq!(frames(&lines[0]["after_throw"]), [1]);
-        assert_eq!(lines[1]["throw"]["step"], 2);
-        let last = throws.finish().expect("the second throw");
+        assert_eq!(frames(&lines[0].value()["after_throw"]), [1]);
+        assert_eq!(lines[1].value()["throw"]["step"], 2);
+        let last = throws.finish().expect("the second throw").value();
         assert_eq!(last["after_throw"]["step"], 2);
         assert!(throws.finish().is_none());
     }

@@ -8,12 +8,13 @@ use experiment::journal::Appender;
 use experiment::protocol::Note;
 use game::{Event, Input};
 
-use super::{End, Entry, Header, InputLine};
+use super::{End, Entry, Header, InputLine, Said};
+
+type Line = Entry<Event, Said>;
 
 /// A journal being written; append-only.
-#[derive(Debug)]
 pub struct Journal {
-    lines: Appender<Entry>,
+    lines: Appender<Line>,
     inputs: u64,
 }
 
@@ -57,16 +58,15 @@ impl Journal {
     /// # Errors
     /// As [`Journal::input`].
     pub fn event(&mut self, event: &Event) -> Result<()> {
-        let value = serde_json::to_value(event).context("an event cannot be written as JSON")?;
-        self.append(Entry::Event(value))
+        self.append(Entry::Event(event.clone()))
     }
 
     /// Records what the device said of itself.
     ///
     /// # Errors
     /// As [`Journal::input`].
-    pub fn device(&mut self, value: serde_json::Value) -> Result<()> {
-        self.append(Entry::Device(value))
+    pub fn device(&mut self, said: impl Into<Said>) -> Result<()> {
+        self.append(Entry::Device(said.into()))
     }
 
     /// Records what the experiment noted, and has it outlast a power cut as soon as the disk can.
@@ -89,7 +89,7 @@ impl Journal {
         Ok(self.lines.sync()?)
     }
 
-    fn append(&mut self, entry: Entry) -> Result<()> {
+    fn append(&mut self, entry: Line) -> Result<()> {
         Ok(self.lines.append(entry)?)
     }
 }

@@ -88,14 +88,7 @@ impl Health {
     }
 
     /// Takes notice of what a headset says of itself, as its lines of the journal have it.
-    pub fn hear(&mut self, line: &Value, now: Instant) {
-        if let Some(frame) = line.get("frame") {
-            // What was not shown is no picture.
-            if frame["shown"].as_bool() == Some(true) {
-                self.picture(now, frame["missed"].as_u64().unwrap_or(0));
-            }
-            return;
-        }
+    pub fn hear(&mut self, line: &Value) {
         if let Some(worn) = line["worn"].as_bool() {
             self.worn = Some(worn);
         }
@@ -225,10 +218,9 @@ mod tests {
         let begun = Instant::now();
         let mut health = Health::default();
         assert_eq!(health.lines(begun).len(), 2, "none was shown");
-        for number in 0..20 {
+        for number in 0..19 {
             let at = begun + Duration::from_millis(100 * number);
-            let frame = json!({ "frame": { "shown": number != 19, "missed": 2 } });
-            health.hear(&frame, at);
+            health.picture(at, 2);
         }
         let lines = health.lines(begun + Duration::from_millis(1850));
         assert_eq!(
@@ -258,10 +250,10 @@ mod tests {
             ),
         ];
         for (begins, ends, words) in cases {
-            health.hear(&begins, now);
+            health.hear(&begins);
             let line = waits(&health).expect("it waits");
             assert!(line.contains(words) && line.contains("WAITS"), "{line}");
-            health.hear(&ends, now);
+            health.hear(&ends);
             assert_eq!(waits(&health), None);
         }
     }

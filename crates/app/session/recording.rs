@@ -1,24 +1,33 @@
 //! What `bowling play` leaves beside the journal: motion table, score sheets, and snapshots for the pictures.
 
-use std::io::Write;
+use std::fmt::Display;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, anyhow};
+use experiment::background::{BackgroundWriter, Sink};
 use game::{Button, Game, Input};
 
-use super::rows::Rows;
 use crate::journal::{Header, Journal};
-use crate::motion;
+use crate::motion::{self, Row};
 use crate::output::{Draft, JOURNAL, MOTION, OutputFolder};
 use crate::pictures::film::{Camera, Film};
 use crate::pictures::{Painter, Wanted};
 
-const MOTION_FAILED: &str = "cannot write the motion table: is the disk full?";
+fn motion_failed(problem: impl Display) -> anyhow::Error {
+    anyhow!("cannot write the motion table: is the disk full? ({problem})")
+}
+
+impl Sink<Row> for Draft {
+    fn write(&mut self, row: Row) -> io::Result<()> {
+        writeln!(self, "{row}")
+    }
+}
 
 /// The files of a recording under way.
 pub struct Recording {
     folder: OutputFolder,
-    motion: Rows<Draft>,
+    motion: BackgroundWriter<Row, Draft>,
     camera: Camera,
 }
 
@@ -30,8 +39,9 @@ impl Recording {
     pub fn begin(path: &Path, header: Header, game: &Game) -> Result<(Self, Journal)> {
         let folder = OutputFolder::create(path)?;
         let begun = folder.draft(MOTION).and_then(|mut motion| {
-            writeln!(motion, "{}", motion::heading()).context(MOTION_FAILED)?;
-            let motion = Rows::begin(motion).context("cannot start the motion table's thread")?;
+            writeln!(motion, "{}", motion::heading()).map_err(motion_failed)?;
+            let motion = BackgroundWriter::begin("motion", motion)
+                .context("cannot start the motion table's thread")?;
             let journal = Journal::create(&folder.path().join(JOURNAL), header)?;
             Ok((motion, journal))
         });
@@ -57,8 +67,8 @@ impl Recording {
     /// # Errors
     /// When the disk is full or gone.
     pub fn frame(&mut self, game: &Game, input: &Input) -> Result<()> {
-        let row = motion::row(game, input);
-        self.motion.push(row).context(MOTION_FAILED)?;
+        let row = Row::new(game, input);
+        self.motion.hand_over(row).map_err(motion_failed)?;
         self.camera.observe(game);
         Ok(())
     }
@@ -74,7 +84,7 @@ impl Recording {
     /// # Errors
     /// When a file cannot be written.
     pub fn finish(self, game: &Game, started: &[Button]) -> Result<(Vec<PathBuf>, Album)> {
-        let motion = self.motion.close().context(MOTION_FAILED)?.finish()?;
+        let motion = self.motion.close().map_err(motion_failed)?.finish()?;
         let mut files = vec![self.folder.path().join(JOURNAL), motion];
         for button in started {
             let stem = button.file_stem();

@@ -4,6 +4,7 @@
 #![cfg_attr(test, allow(clippy::unwrap_used))]
 
 pub mod analysis;
+pub mod background;
 pub mod behaviour;
 pub mod consent;
 pub mod digest;

@@ -1,20 +1,21 @@
-//! Appends to a journal from a thread of its own, so that no frame waits for a disk.
+//! Appends to a journal in the background.
 
 use std::convert::Infallible;
-use std::fs::{File, OpenOptions};
-use std::io::{BufWriter, Write};
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::sync::{Arc, OnceLock};
-use std::thread::JoinHandle;
+use std::sync::mpsc::{Sender, channel};
 use std::time::{Duration, Instant};
 
 use serde::Serialize;
 
 use super::{Check, JournalError, SCHEMA};
+use crate::background::{BackgroundWriter, Sink};
 
-/// A power cut loses at most this much; a crash of the program alone loses nothing that was appended.
+/// A power cut loses at most this much; a kill of the program alone what was appended in the last milliseconds.
 const SYNC_EVERY: Duration = Duration::from_secs(1);
+/// Lines go to the system at the latest when there is so much of them [bytes].
+const BUFFER: usize = 1 << 16;
 
 /// A journal being written; append-only.
 ///
@@ -22,10 +23,8 @@ const SYNC_EVERY: Duration = Duration::from_secs(1);
 /// this is dropped is still written.
 #[derive(Debug)]
 pub struct Appender<T> {
-    /// `None` once dropped.
-    orders: Option<Sender<Order<T>>>,
-    thread: Option<JoinHandle<()>>,
-    failure: Arc<OnceLock<JournalError>>,
+    path: PathBuf,
+    writer: BackgroundWriter<Order<T>, Writer>,
 }
 
 #[derive(Debug)]
@@ -45,34 +44,30 @@ impl<T: Serialize + Send + 'static> Appender<T> {
         options.append(true).create_new(true);
         #[cfg(unix)]
         std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o600);
-        let refuse = |error: std::io::Error| JournalError::Create {
-            path: path.to_owned(),
-            problem: error.to_string(),
-        };
-        let file = options.open(path).map_err(refuse)?;
-        let failure = Arc::new(OnceLock::new());
-        let (orders, received) = channel();
-        let writer = Writer {
-            file: BufWriter::new(file),
-            path: path.to_owned(),
-            line: 0,
-            check: Check::of_schema(SCHEMA),
-            unsynced_since: None,
-            waiting: None,
-            failure: Arc::clone(&failure),
-        };
-        let thread = std::thread::Builder::new()
-            .name("journal".to_owned())
-            .spawn(move || writer.run(&received))
-            .map_err(refuse)?;
+        let writer = options.open(path).and_then(|file| {
+            let writer = Writer {
+                file,
+                buffer: Vec::with_capacity(BUFFER),
+                line: 0,
+                check: Check::of_schema(SCHEMA),
+                unsynced_since: None,
+                waiting: None,
+            };
+            // Without a thread nothing is written: no empty file stays.
+            BackgroundWriter::begin("journal", writer).inspect_err(|_| {
+                let _ = fs::remove_file(path);
+            })
+        });
         Ok(Self {
-            orders: Some(orders),
-            thread: Some(thread),
-            failure,
+            path: path.to_owned(),
+            writer: writer.map_err(|error| JournalError::Create {
+                path: path.to_owned(),
+                problem: error.to_string(),
+            })?,
         })
     }
 
-    /// Hands over an entry, which must serialise as a JSON object; takes a microsecond or less.
+    /// Hands over an entry, which must serialise as a JSON object; takes a microsecond or two.
     ///
     /// # Errors
     /// When an earlier entry could not be written: the disk is full or gone.
@@ -87,9 +82,10 @@ impl<T: Serialize + Send + 'static> Appender<T> {
     pub fn sync(&mut self) -> Result<(), JournalError> {
         let (done, wait) = channel();
         self.order(Order::Sync(Some(done)))?;
+        self.writer.hurry();
         // Nothing is ever sent: this ends when the thread lets go, after its failure, if any, can be read.
         let _ = wait.recv();
-        self.failure()
+        self.writer.failure().map_err(|problem| self.lost(problem))
     }
 
     /// Asks for the same without waiting for it.
@@ -101,125 +97,100 @@ impl<T: Serialize + Send + 'static> Appender<T> {
     }
 
     fn order(&mut self, order: Order<T>) -> Result<(), JournalError> {
-        self.failure()?;
-        let orders = self
-            .orders
-            .as_ref()
-            .expect("only dropping takes the channel");
-        // A thread that has given up has left its failure, which the next order finds.
-        let _ = orders.send(order);
-        Ok(())
+        let handed_over = self.writer.hand_over(order);
+        handed_over.map_err(|problem| self.lost(problem))
     }
 
-    fn failure(&self) -> Result<(), JournalError> {
-        self.failure.get().cloned().map_or(Ok(()), Err)
-    }
-}
-
-impl<T> Drop for Appender<T> {
-    fn drop(&mut self) {
-        self.orders = None;
-        if let Some(thread) = self.thread.take() {
-            // A panic of the thread has been printed; nothing is left to do.
-            let _ = thread.join();
-        }
+    fn lost(&self, problem: String) -> JournalError {
+        let path = self.path.clone();
+        JournalError::Write { path, problem }
     }
 }
 
 /// The thread's side.
+#[derive(Debug)]
 struct Writer {
-    file: BufWriter<File>,
-    path: PathBuf,
+    file: File,
+    /// Lines that the system does not have yet.
+    buffer: Vec<u8>,
     line: u64,
     check: Check,
     /// When the oldest line that is not yet synced was written.
     unsynced_since: Option<Instant>,
     /// Who waits for the sync at hand; kept here so that a failure is told before they go on.
     waiting: Option<Sender<Infallible>>,
-    failure: Arc<OnceLock<JournalError>>,
+}
+
+impl<T: Serialize + Send + 'static> Sink<Order<T>> for Writer {
+    fn write(&mut self, order: Order<T>) -> io::Result<()> {
+        match order {
+            Order::Append(entry) => self.append(&entry),
+            Order::Sync(done) => {
+                self.waiting = done;
+                self.sync()?;
+                self.waiting = None;
+                Ok(())
+            }
+        }
+    }
+
+    fn pause(&mut self) -> io::Result<()> {
+        self.flush()?;
+        self.sync_in_time()
+    }
+
+    fn close(&mut self) -> io::Result<()> {
+        self.sync()
+    }
 }
 
 impl Writer {
-    fn run<T: Serialize>(mut self, orders: &Receiver<Order<T>>) {
-        if let Err(error) = self.obey(orders) {
-            let failure = JournalError::Write {
-                path: self.path.clone(),
-                problem: error.to_string(),
-            };
-            // Set once: the thread ends here.
-            let _ = self.failure.set(failure);
-            // What is still buffered would fail again.
-            let _ = self.file.into_parts();
-        }
-    }
-
-    /// Writes until nobody can order any more. Lines go to the system whenever no further one waits.
-    fn obey<T: Serialize>(&mut self, orders: &Receiver<Order<T>>) -> std::io::Result<()> {
-        loop {
-            let order = match orders.try_recv() {
-                Ok(order) => order,
-                Err(_) => {
-                    self.file.flush()?;
-                    match orders.recv_timeout(self.time_to_sync()) {
-                        Ok(order) => order,
-                        Err(RecvTimeoutError::Timeout) => {
-                            self.sync()?;
-                            continue;
-                        }
-                        Err(RecvTimeoutError::Disconnected) => return self.sync(),
-                    }
-                }
-            };
-            match order {
-                Order::Append(entry) => self.append(&entry)?,
-                Order::Sync(done) => {
-                    self.waiting = done;
-                    self.sync()?;
-                    self.waiting = None;
-                }
-            }
-            if self.time_to_sync().is_zero() {
-                self.sync()?;
-            }
-        }
-    }
-
-    fn append(&mut self, entry: &impl Serialize) -> std::io::Result<()> {
+    fn append(&mut self, entry: &impl Serialize) -> io::Result<()> {
         let content = serde_json::to_vec(entry)?;
         let inner = content
             .strip_prefix(b"{")
-            .ok_or_else(|| std::io::Error::other("an entry is no JSON object"))?;
+            .ok_or_else(|| io::Error::other("an entry is no JSON object"))?;
         self.line += 1;
         let check = self.check.go_on(&content);
         write!(
-            self.file,
+            self.buffer,
             "{{\"line\":{},\"check\":\"{check:08x}\",",
             self.line
         )?;
-        self.file.write_all(inner)?;
-        self.file.write_all(b"\n")?;
+        self.buffer.extend_from_slice(inner);
+        self.buffer.push(b'\n');
         self.unsynced_since.get_or_insert_with(Instant::now);
+        if self.buffer.len() >= BUFFER {
+            self.flush()?;
+        }
+        self.sync_in_time()
+    }
+
+    /// Hands the lines to the system.
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.write_all(&self.buffer)?;
+        self.buffer.clear();
         Ok(())
     }
 
-    fn sync(&mut self) -> std::io::Result<()> {
-        self.file.flush()?;
+    /// Syncs where lines have waited long enough.
+    fn sync_in_time(&mut self) -> io::Result<()> {
+        match self.unsynced_since {
+            Some(since) if since.elapsed() >= SYNC_EVERY => self.sync(),
+            _ => Ok(()),
+        }
+    }
+
+    fn sync(&mut self) -> io::Result<()> {
+        self.flush()?;
         if self.unsynced_since.take().is_some() {
-            let file = self.file.get_ref();
-            file.sync_data()?;
+            self.file.sync_data()?;
             // Writing to a file without a name succeeds, and leaves nothing.
             #[cfg(unix)]
-            if std::os::unix::fs::MetadataExt::nlink(&file.metadata()?) == 0 {
-                return Err(std::io::Error::other("somebody has removed it"));
+            if std::os::unix::fs::MetadataExt::nlink(&self.file.metadata()?) == 0 {
+                return Err(io::Error::other("somebody has removed it"));
             }
         }
         Ok(())
-    }
-
-    /// Zero when lines have waited long enough.
-    fn time_to_sync(&self) -> Duration {
-        self.unsynced_since.map_or(SYNC_EVERY, |since| {
-            SYNC_EVERY.saturating_sub(since.elapsed())
-        })
     }
 }
