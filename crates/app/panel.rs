@@ -69,7 +69,7 @@ impl Panel {
             answered_in,
             shown: None,
             stop: StopSign::default(),
-            trigger: Trigger::default(),
+            trigger: Trigger::held(),
             words,
         }
     }
@@ -83,7 +83,12 @@ impl Panel {
         self.stop.attend(session, pointing)?;
         self.show(content, pointing.map(|pointing| pointing.head));
         // Also while nothing is asked: a trigger that is pulled already answers nothing.
-        let is_pressed = self.trigger.press(session.trigger());
+        let is_pressed = if pointing.and_then(|pointing| pointing.hand).is_some() {
+            self.trigger.press(session.trigger())
+        } else {
+            self.forget_trigger();
+            false
+        };
         let (Some(shown), Some(pointing)) = (&mut self.shown, pointing) else {
             return Ok(());
         };
@@ -95,6 +100,11 @@ impl Panel {
             Some(choice) if is_pressed => choose(&choice, session, self.answered_in),
             _ => Ok(()),
         }
+    }
+
+    /// What the trigger does now is not meant for the panel, or not known: it has to be let go before it answers.
+    pub fn forget_trigger(&mut self) {
+        self.trigger = Trigger::held();
     }
 
     /// A new question hangs where the last one did; the first one of a form before the head.

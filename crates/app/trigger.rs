@@ -11,6 +11,11 @@ pub struct Trigger {
 }
 
 impl Trigger {
+    /// One that has to be let go before it counts.
+    pub fn held() -> Self {
+        Self { is_pulled: true }
+    }
+
     /// Follows it to `value`, from 0 (open) to 1 (closed); tells whether it was pulled just now.
     pub fn press(&mut self, value: f64) -> bool {
         let was_pulled = self.is_pulled;

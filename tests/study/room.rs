@@ -209,22 +209,33 @@ fn a_trigger_that_is_held_when_a_question_appears_answers_nothing() {
     let mut before = Panel::new(AnsweredIn::Headset, Words::shipped());
     frame(&mut session, &mut before, None, 0.0);
     let aim = before.place_of(&first).expect("it is shown");
+    let head = Some(Tracked::at(Pose::from_position(DVec3::new(0.0, 1.7, 0.0))));
     let mut panel = Panel::new(AnsweredIn::Headset, Words::shipped());
-    // The head is not found: no question hangs anywhere.
-    let held = Input {
-        trigger: 1.0,
-        steps: 8,
-        ..Input::default()
-    };
-    session.frame(held).expect("writable");
-    panel.attend(&mut session).expect("writable");
-    assert_eq!(panel.place_of(&first), None);
-    for trigger in [1.0, 1.0, 0.0] {
-        frame(&mut session, &mut panel, Some(aim), trigger);
-        assert_eq!(panel.place_of(&first), Some(aim));
-        assert_eq!(item(&session).as_deref(), Some("age_band"));
+    // They are there at once; head and hand were lost, while the trigger was held; the hand was lost with its trigger.
+    for (head, trigger) in [(None, None), (None, Some(1.0)), (head, Some(0.0))] {
+        if let Some(trigger) = trigger {
+            let lost = Input {
+                head,
+                trigger,
+                steps: 8,
+                ..Input::default()
+            };
+            session.frame(lost).expect("writable");
+            panel.attend(&mut session).expect("writable");
+        }
+        for _ in 0..2 {
+            frame(&mut session, &mut panel, Some(aim), 1.0);
+            assert_eq!(panel.place_of(&first), Some(aim));
+            assert_eq!(item(&session).as_deref(), Some("age_band"));
+        }
     }
+    frame(&mut session, &mut panel, Some(aim), 0.0);
+    panel.forget_trigger();
     frame(&mut session, &mut panel, Some(aim), 1.0);
+    assert_eq!(item(&session).as_deref(), Some("age_band"));
+    for trigger in [0.0, 1.0] {
+        frame(&mut session, &mut panel, Some(aim), trigger);
+    }
     assert_eq!(item(&session).as_deref(), Some("vr_before"));
 }
 

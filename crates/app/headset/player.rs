@@ -268,6 +268,9 @@ impl Player {
             input.press_blue |= key[Button::Blue as usize];
             let held = session.game().held();
             session.frame(input)?;
+            if !is_here || wish.is_some() {
+                panel.forget_trigger();
+            }
             if is_here {
                 panel.attend(session)?;
             }
