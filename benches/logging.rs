@@ -2,7 +2,7 @@
 //!
 //! Criterion gives means; a hitch is a percentile, so that this bench keeps every single time. Frames come at 120 Hz, as the
 //! fastest headsets have them, with head, hand and the hand at the trigger's last change moving and measured, an event, and
-//! the headset's line on the frame. Between two frames the same thread spends the median time on nothing at all: what that
+//! the headset's line on the frame. Between two frames the same thread spends the median time of the first second on nothing at all: what that
 //! takes at the same percentiles is the machine's.
 
 use std::time::{Duration, Instant};
@@ -33,14 +33,15 @@ fn main() {
         std::thread::sleep(due.saturating_duration_since(Instant::now()));
     };
     let mut warm_up = Times::default();
-    for frame in 0..WARM_UP.min(frames) {
+    let first = WARM_UP.min(frames);
+    for frame in 0..first {
         wait(f64::from(frame));
         let seen = Seen::new(frame);
         warm_up.take(|| seen.log(&mut journal));
     }
     let usual = warm_up.at(0.5);
     let (mut logging, mut nothing) = (Times::default(), Times::default());
-    for frame in WARM_UP..WARM_UP + frames {
+    for frame in first..first + frames {
         wait(f64::from(frame));
         let seen = Seen::new(frame);
         logging.take(|| seen.log(&mut journal));

@@ -45,7 +45,7 @@ pub enum Entry<E = Value, D = Value> {
 pub enum Said {
     /// A value.
     Now(Value),
-    /// What makes one.
+    /// What makes one: of nothing that the experimenter is told, for only the journal hears it.
     Later(Box<dyn Fn() -> Value + Send>),
 }
 

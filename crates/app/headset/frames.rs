@@ -34,10 +34,15 @@ pub struct FrameLine {
     prediction_ms: Option<f64>,
     simulated_ms: f64,
     taken_ms: f64,
-    /// Pictures that the display showed a second time before this one.
-    pub missed: u64,
-    /// Both eyes were located, drawn and handed over.
-    pub shown: bool,
+    missed: u64,
+    shown: bool,
+}
+
+impl FrameLine {
+    /// Pictures that the display showed a second time before this one; `None` where it was not shown itself.
+    pub fn missed_before_it(&self) -> Option<u64> {
+        self.shown.then_some(self.missed)
+    }
 }
 
 impl From<FrameLine> for Said {
@@ -185,12 +190,14 @@ mod tests {
             woken: std::time::Instant::now(),
             simulated: Duration::ZERO,
         };
-        times.finish(timing(3, Some(0.5)), true);
+        let shown = times.finish(timing(3, Some(0.5)), true);
+        assert_eq!(shown.missed_before_it(), Some(3));
         times.begin_game();
         for ahead in [0.01, 0.03, 0.02] {
             times.finish(timing(1, Some(ahead)), true);
         }
-        times.finish(timing(0, None), false);
+        let unseen = times.finish(timing(0, None), false);
+        assert_eq!(unseen.missed_before_it(), None);
         let game = times.game_summary()["game_frames"].clone();
         assert_eq!((&game["count"], &game["missed"]), (&json!(4), &json!(3)));
         assert_eq!(game["prediction_median_ms"], json!(20.0_f32));

@@ -364,9 +364,8 @@ impl Player {
         }
         let line = self.times.finish(timing, is_shown);
         self.shared.with(|session| {
-            // What was not shown is no picture.
-            if line.shown {
-                session.picture(line.missed);
+            if let Some(missed) = line.missed_before_it() {
+                session.picture(missed);
             }
             session.device(line)
         })?;

@@ -1,6 +1,7 @@
 //! Writes in the background, so that no frame waits for a disk.
 
 use std::io;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::sync::{Arc, OnceLock};
 use std::thread::{self, JoinHandle};
@@ -9,6 +10,9 @@ use std::time::Duration;
 /// The thread looks this often for what was handed over. Nobody wakes it for that: a wake-up takes the thread that hands over
 /// ten microseconds, and a hundred now and then (docs/frame.md).
 const LOOK_EVERY: Duration = Duration::from_millis(2);
+
+/// What is said of a thread that panicked.
+const FAULT: &str = "the thread that writes it has ended by a fault of the program";
 
 /// What writes.
 pub trait Sink<T>: Send + 'static {
@@ -55,13 +59,17 @@ impl<T: Send + 'static, S: Sink<T>> BackgroundWriter<T, S> {
         let (items, received) = channel();
         let failure = Arc::new(OnceLock::new());
         let told = Arc::clone(&failure);
-        let write = move || match drain(&received, &mut sink) {
-            Ok(()) => Some(sink),
-            Err(error) => {
-                // Set once, and before the sink lets go of who waits for it: the thread ends here.
-                let _ = told.set(error.to_string());
-                None
-            }
+        let write = move || {
+            let drained = catch_unwind(AssertUnwindSafe(|| drain(&received, &mut sink)));
+            let problem = match drained {
+                Ok(Ok(())) => return Some(sink),
+                Ok(Err(error)) => error.to_string(),
+                // Its message has been printed.
+                Err(_) => FAULT.to_owned(),
+            };
+            // Set once, and before channel and sink let go of who waits for them: the thread ends here.
+            let _ = told.set(problem);
+            None
         };
         let thread = thread::Builder::new().name(name.to_owned()).spawn(write)?;
         Ok(Self {
@@ -91,7 +99,7 @@ impl<T: Send + 'static, S: Sink<T>> BackgroundWriter<T, S> {
     pub fn close(mut self) -> Result<S, String> {
         let sink = self.join();
         self.failure()?;
-        sink.ok_or_else(|| "the thread that writes it has ended by a fault".to_owned())
+        sink.ok_or_else(|| FAULT.to_owned())
     }
 
     /// Why nothing more is written.
@@ -111,7 +119,7 @@ impl<T, S> BackgroundWriter<T, S> {
         }
     }
 
-    /// The sink, when all that was waiting is written; a panic of the thread has been printed.
+    /// The sink, when all that was waiting is written.
     fn join(&mut self) -> Option<S> {
         self.items = None;
         self.hurry();
@@ -186,7 +194,6 @@ mod tests {
             lines.for_each(|line| sender.send(line.unwrap()).unwrap());
         });
         let mut writer = BackgroundWriter::begin("test", pipe).unwrap();
-        // The second comes when the thread has found nothing once at least.
         for item in ["one", "two"] {
             writer.hand_over(item.to_owned()).unwrap();
             let line = lines.recv_timeout(Duration::from_secs(20));

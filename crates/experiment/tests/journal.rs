@@ -3,9 +3,12 @@
 
 use std::fs;
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 use experiment::journal::{Appender, LineProblem, Lines, Torn};
 use experiment::random::SplitMix64;
+use serde::ser::Error;
+use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
 fn header() -> Value {
@@ -127,6 +130,60 @@ fn a_missing_line_a_foreign_file_and_another_version_are_named() {
         program: "2.0".to_owned(),
     };
     assert_eq!(read(newer.as_bytes()).2, Some((1, expected)));
+}
+
+#[test]
+fn a_line_reaches_the_system_though_nobody_syncs() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.jsonl");
+    let mut journal = Appender::create(&path).unwrap();
+    journal.append(header()).unwrap();
+    let begun = Instant::now();
+    for lines in 2..=21 {
+        journal.append(json!({ "note": lines })).unwrap();
+        while read(&fs::read(&path).unwrap()).0.len() < lines {
+            assert!(begun.elapsed() < Duration::from_secs(20), "line {lines}");
+            std::thread::yield_now();
+        }
+    }
+    // A sync a line at most, one a second, would take twenty seconds.
+    assert!(begun.elapsed() < Duration::from_secs(10));
+}
+
+/// An entry that cannot be put into words, or at which the program is at fault.
+enum Faulty {
+    No,
+    Unwritable,
+    Panics,
+}
+
+impl Serialize for Faulty {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::No => header().serialize(serializer),
+            Self::Unwritable => Err(S::Error::custom("no words")),
+            Self::Panics => panic!("this is part of the test"),
+        }
+    }
+}
+
+#[test]
+fn a_fault_in_an_entry_is_reported_and_loses_no_line_before_it() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, faulty, said) in [
+        ("a.jsonl", Faulty::Unwritable, "no words"),
+        ("b.jsonl", Faulty::Panics, "fault of the program"),
+    ] {
+        let path = folder.path().join(name);
+        let mut journal = Appender::create(&path).unwrap();
+        journal.append(Faulty::No).unwrap();
+        journal.append(faulty).unwrap();
+        let error = journal.sync().unwrap_err().to_string();
+        assert!(error.contains(name) && error.contains(said), "{error}");
+        assert!(journal.append(Faulty::No).is_err());
+        drop(journal);
+        assert_eq!(read(&fs::read(&path).unwrap()).0.len(), 1);
+    }
 }
 
 #[cfg(unix)]

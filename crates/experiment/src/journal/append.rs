@@ -107,7 +107,7 @@ impl<T: Serialize + Send + 'static> Appender<T> {
     }
 }
 
-/// The thread's side.
+/// The thread's side. Dropped, also where an entry was at fault, it hands over the lines before that.
 #[derive(Debug)]
 struct Writer {
     file: File,
@@ -144,6 +144,13 @@ impl<T: Serialize + Send + 'static> Sink<Order<T>> for Writer {
     }
 }
 
+impl Drop for Writer {
+    fn drop(&mut self) {
+        // Who waited has been told of the failure, if that is why.
+        let _ = self.flush();
+    }
+}
+
 impl Writer {
     fn append(&mut self, entry: &impl Serialize) -> io::Result<()> {
         let content = serde_json::to_vec(entry)?;
@@ -166,11 +173,11 @@ impl Writer {
         self.sync_in_time()
     }
 
-    /// Hands the lines to the system.
+    /// Hands the lines to the system; what it does not take would fail again and is let go.
     fn flush(&mut self) -> io::Result<()> {
-        self.file.write_all(&self.buffer)?;
+        let written = self.file.write_all(&self.buffer);
         self.buffer.clear();
-        Ok(())
+        written
     }
 
     /// Syncs where lines have waited long enough.
