@@ -15,10 +15,16 @@ fn header() -> Value {
     json!({ "header": { "schema": 3, "program": "0.1.0" } })
 }
 
-/// A journal of a header and `count` lines.
-fn written(path: &Path, count: u64) -> Vec<u8> {
+/// A journal that has its header.
+fn begun(path: &Path) -> Appender<Value> {
     let mut journal = Appender::create(path).unwrap();
     journal.append(header()).unwrap();
+    journal
+}
+
+/// A journal of a header and `count` lines.
+fn written(path: &Path, count: u64) -> Vec<u8> {
+    let mut journal = begun(path);
     for number in 0..count {
         journal
             .append(json!({ "input": [number, 1.0 / 3.0] }))
@@ -54,8 +60,7 @@ fn what_is_appended_is_read_back_in_its_order() {
 fn sync_has_everything_on_disk_while_the_journal_is_open() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.jsonl");
-    let mut journal = Appender::create(&path).unwrap();
-    journal.append(header()).unwrap();
+    let mut journal = begun(&path);
     journal.append(json!({ "note": 1 })).unwrap();
     journal.sync().unwrap();
     assert_eq!(read(&fs::read(&path).unwrap()).0.len(), 2);
@@ -136,18 +141,17 @@ fn a_missing_line_a_foreign_file_and_another_version_are_named() {
 fn a_line_reaches_the_system_though_nobody_syncs() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.jsonl");
-    let mut journal = Appender::create(&path).unwrap();
-    journal.append(header()).unwrap();
-    let begun = Instant::now();
+    let mut journal = begun(&path);
+    let since = Instant::now();
     for lines in 2..=21 {
         journal.append(json!({ "note": lines })).unwrap();
         while read(&fs::read(&path).unwrap()).0.len() < lines {
-            assert!(begun.elapsed() < Duration::from_secs(20), "line {lines}");
+            assert!(since.elapsed() < Duration::from_secs(20), "line {lines}");
             std::thread::yield_now();
         }
     }
     // A sync a line at most, one a second, would take twenty seconds.
-    assert!(begun.elapsed() < Duration::from_secs(10));
+    assert!(since.elapsed() < Duration::from_secs(10));
 }
 
 /// An entry that cannot be put into words, or at which the program is at fault.
@@ -191,8 +195,7 @@ fn a_fault_in_an_entry_is_reported_and_loses_no_line_before_it() {
 fn a_journal_that_somebody_removes_is_missed() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.jsonl");
-    let mut journal = Appender::create(&path).unwrap();
-    journal.append(header()).unwrap();
+    let mut journal = begun(&path);
     journal.sync().unwrap();
     fs::remove_file(&path).unwrap();
     journal.append(json!({ "note": 1 })).unwrap();
